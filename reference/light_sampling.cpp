@@ -1,0 +1,1 @@
+#include "reference/light_sampling.h"

@@ -1,0 +1,1 @@
+#include "cone/bounce.h"

@@ -1,0 +1,1 @@
+#include "cone/cone_set.h"

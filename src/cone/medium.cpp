@@ -1,0 +1,1 @@
+#include "cone/medium.h"

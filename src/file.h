@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace voxref {
+
+/// Lets `write` fill a file beside `file`, then renames it there: `file` appears whole or not at all, and what was there
+/// stays when `write` throws. @throws Error with the path when it cannot be created or renamed
+void write_atomically(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path& temporary)>& write);
+void write_atomically(const std::filesystem::path& file, std::span<const std::byte> content);
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+/// Checks, before work begins, that `file` could be written: its folder exists and takes files, and it is no folder
+/// itself. Leaves nothing behind. @throws Error with the path
+void require_writable(const std::filesystem::path& file);
+
+/// @throws Error with the path when it is missing or cannot be read
+std::string read_file(const std::filesystem::path& file);
+
+/// Lower-case hexadecimal SHA-256 (FIPS 180-4) of `content`; of a scene, `Scene::sha256` covers all its files.
+std::string sha256(std::span<const std::byte> content);
+
+}  // namespace voxref

@@ -1,0 +1,42 @@
+#pragma once
+#include <memory>
+
+#include "scene/ray.h"
+#include "scene/scene.h"
+
+namespace voxref {
+
+/// Finds what rays hit, over a scene's triangles; holes of alpha-masked materials let them through. Immutable after
+/// construction, so any number of threads may cast at once. Keeps a reference to the scene.
+class Caster {
+ public:
+  explicit Caster(const Scene& scene);
+  ~Caster();
+  Caster(Caster&&) noexcept;
+  Caster(const Caster&) = delete;
+
+  /// The nearest hit with t in [ray.tmin, ray.tmax], or none.
+  Hit closest(const Ray& ray) const;
+  /// Whether anything lies between ray.tmin and ray.tmax.
+  bool occluded(const Ray& ray) const;
+
+  /// How far a ray's origin must stand off its surface, along the normal, so that rounding cannot put it behind: 32 units
+  /// in the last place of the scene's largest coordinate. World units.
+  float surface_offset() const;
+
+  /// A ray that leaves a surface at `point` to the side of `normal` (unit).
+  Ray leave(const glm::vec3& point, const glm::vec3& normal, const glm::vec3& direction) const {
+    return {point + surface_offset() * normal, direction, 0.0f, std::numeric_limits<float>::infinity()};
+  }
+  /// Whether the open segment between two points is free; each must already stand off its surface.
+  bool visible(const glm::vec3& from, const glm::vec3& to) const { return !occluded({from, to - from, 0.0f, 1.0f}); }
+
+  /// Bytes that the acceleration structure holds.
+  size_t bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace voxref

@@ -1,0 +1,43 @@
+#pragma once
+#include <glm/vec3.hpp>
+
+namespace voxref {
+
+/// How a surface point scatters light, textures looked up: glTF 2.0 appendix B, KHR_materials_specular and
+/// KHR_materials_pbrSpecularGlossiness brought to one form. With s = (1 - |v.h|)^5 (Schlick 1994), D the GGX distribution
+/// and V the height-correlated Smith visibility (Heitz 2014) of width alpha:
+///
+///   f = diffuse / pi x (1 - (layer_f0 + layer_f1 s)) + D V (specular_f0 + specular_f1 s)
+struct Reflectance {
+  glm::vec3 diffuse{0.0f};      ///< albedo of the Lambertian base, before what the layer over it reflects is taken off
+  float layer_f0 = 0.0f;        ///< share that the dielectric layer takes from the base at normal incidence ...
+  float layer_f1 = 0.0f;        ///< ... and what is added at grazing
+  glm::vec3 specular_f0{0.0f};  ///< Fresnel reflectance of the lobe at normal incidence ...
+  glm::vec3 specular_f1{0.0f};  ///< ... and what is added at grazing
+  float alpha = 1.0f;           ///< GGX width: perceptual roughness squared, at least min_alpha
+
+  /// Below this width (perceptual roughness 0.03) float32 no longer resolves the lobe; a smoother material is rendered as
+  /// if it had it.
+  static constexpr float min_alpha = 0.001f;
+
+  bool has_diffuse() const { return diffuse != glm::vec3(0.0f); }
+  bool has_specular() const { return specular_f0 != glm::vec3(0.0f) || specular_f1 != glm::vec3(0.0f); }
+  bool black() const { return !has_diffuse() && !has_specular(); }
+};
+
+/// The BSDF, 1/sr, without the cosine. Zero unless both directions lie on the side of `normal`.
+/// @param normal,out,in unit; out and in point away from the surface
+glm::vec3 evaluate(const Reflectance& reflectance, const glm::vec3& normal, const glm::vec3& out, const glm::vec3& in);
+
+/// GGX distribution of normals, D(n.h), Walter et al. 2007 eq. 33. @param n_h in [0,1]
+float ggx_distribution(float n_h, float alpha);
+/// Height-correlated Smith masking-shadowing over 4 (n.l)(n.v): Heitz 2014 eq. 99. @param n_l,n_v in (0,1]
+float ggx_visibility(float n_l, float n_v, float alpha);
+
+/// Directional albedo of the specular lobe: the share of light from direction `n_v` (cosine) that it scatters, per
+/// channel, by numerical integration tabulated once over (n_v, alpha). Error below 0.002.
+glm::vec3 specular_albedo(const Reflectance& reflectance, float n_v);
+/// The same averaged over the cosine-weighted hemisphere, for voxels, which forget where light goes.
+glm::vec3 hemispherical_albedo(const Reflectance& reflectance);
+
+}  // namespace voxref

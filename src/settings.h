@@ -1,0 +1,43 @@
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cone/bounce.h"
+#include "cone/render.h"
+#include "voxel/grid.h"
+#include "voxel/mipmap.h"
+#include "voxel/shade.h"
+#include "voxel/voxelize.h"
+
+namespace voxref {
+
+/// Every parameter of the cone tracer. A profile is such an object with a name.
+struct Settings {
+  std::string profile = "radiometric";
+  GridOptions grid;
+  VoxelizeOptions voxelize;
+  ShadeOptions shade;
+  MipmapOptions mipmap;
+  BounceOptions bounce;
+  RenderOptions render;  ///< JSON keys cone.*, ao.*, pixel.*
+};
+
+/// Defaults of a profile. @throws Error for an unknown name, listing those there are
+Settings profile(std::string_view name);
+
+/// JSON objects nest as the dots of the parameter names say; a file may name the profile it starts from.
+nlohmann::json to_json(const Settings& settings);
+/// Applies the keys that `json` holds. @throws Error naming an unknown key and the nearest known one, or the range
+void apply_json(Settings& settings, const nlohmann::json& json);
+/// Applies one `key=value`, for instance "cone.step=0.25". @throws Error as apply_json
+void apply_assignment(Settings& settings, std::string_view assignment);
+
+/// One line per parameter for the help: key, default, range, meaning.
+struct ParameterHelp {
+  std::string key, value, range, meaning;
+};
+std::vector<ParameterHelp> parameter_help();
+
+}  // namespace voxref

@@ -1,0 +1,33 @@
+#pragma once
+#include <glm/vec3.hpp>
+
+#include "scene/scene.h"
+
+namespace voxref {
+
+struct GridOptions {
+  int resolution = 256;  ///< voxels along the longest side, 16 to 2048
+};
+
+/// A box of cubic voxels. Voxel (x,y,z) covers min + h [x,x+1) x [y,y+1) x [z,z+1).
+struct Grid {
+  glm::ivec3 size{0};    ///< voxels per side
+  glm::vec3 min{0.0f};   ///< world
+  float voxel = 1.0f;    ///< side of a voxel, world units
+
+  glm::vec3 max() const { return min + voxel * glm::vec3(size); }
+  glm::vec3 center(const glm::ivec3& v) const { return min + voxel * (glm::vec3(v) + 0.5f); }
+  /// World position in voxel units: the grid is [0,size], voxel centres are at half-integers.
+  glm::vec3 to_voxels(const glm::vec3& world) const { return (world - min) / voxel; }
+  bool contains(const glm::ivec3& v) const {
+    return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < size.x && v.y < size.y && v.z < size.z;
+  }
+  size_t voxel_count() const { return size_t(size.x) * size_t(size.y) * size_t(size.z); }
+};
+
+/// Fits a grid around `bounds`: h = longest side / (resolution - 3), at least 4 voxels a side, the box centred, at least
+/// 1.5 voxels of margin, so that walls on the bounds of the longest axis lie at voxel centres rather than on voxel faces.
+/// Empty or point-like bounds give a 4^3 grid of unit voxels around them. @throws Error for a resolution out of range
+Grid fit_grid(const Bounds& bounds, const GridOptions& options);
+
+}  // namespace voxref

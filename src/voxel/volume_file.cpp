@@ -1,0 +1,1 @@
+#include "voxel/volume_file.h"

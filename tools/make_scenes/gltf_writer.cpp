@@ -1,0 +1,1 @@
+#include "make_scenes/gltf_writer.h"
