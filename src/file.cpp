@@ -1,1 +1,102 @@
 #include "file.h"
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "error.h"
+
+namespace voxref {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Beside the target, so that renaming stays within one file system; the extension stays last, because writers choose
+/// the format by it.
+fs::path temporary_beside(const fs::path& file) {
+  return file.parent_path() /
+         ("." + file.stem().string() + "." + std::to_string(::getpid()) + file.extension().string());
+}
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+}  // namespace
+
+void write_atomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  require_writable(file);
+  const fs::path temporary = temporary_beside(file);
+  std::error_code error;
+  try {
+    write(temporary);
+    fs::rename(temporary, file, error);
+    if (error) throw Error(file.string(), "cannot be written: " + error.message());
+  } catch (...) {
+    fs::remove(temporary, error);
+    throw;
+  }
+}
+
+void write_atomically(const fs::path& file, std::span<const std::byte> content) {
+  write_atomically(file, [&](const fs::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream.write(reinterpret_cast<const char*>(content.data()), static_cast<std::streamsize>(content.size()));
+    stream.close();
+    if (!stream) throw Error(file.string(), "cannot be written: " + std::string(std::strerror(errno)));
+  });
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  write_atomically(file, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void require_writable(const fs::path& file) {
+  std::error_code error;
+  if (file.empty() || !file.has_filename()) throw Error(file.string(), "is not the name of a file");
+  if (fs::is_directory(file, error)) throw Error(file.string(), "is a folder");
+  if (!fs::is_directory(folder_of(file), error))
+    throw Error(file.string(), "cannot be written: there is no folder " + folder_of(file).string());
+  // The only reliable question is the attempt: permission bits say nothing about root or read-only file systems.
+  const fs::path temporary = temporary_beside(file);
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) throw Error(file.string(), "cannot be written: " + std::string(std::strerror(errno)));
+  ::close(descriptor);
+  fs::remove(temporary, error);
+}
+
+std::string read_file(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw Error(file.string(), "there is no such file");
+  if (fs::is_directory(file, error)) throw Error(file.string(), "is a folder");
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();
+  if (!stream) {
+    // An empty file sets failbit because nothing could be inserted; it is still a file that was read.
+    if (fs::file_size(file, error) == 0 && !error) return {};
+    throw Error(file.string(), "cannot be read: " + std::string(std::strerror(errno)));
+  }
+  return std::move(content).str();
+}
+
+std::string sha256(std::span<const std::byte> content) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int length = 0;
+  if (EVP_Digest(content.data(), content.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1)
+    throw Error("sha256", "the cryptographic library refused");
+  constexpr char digits[] = "0123456789abcdef";
+  std::string text;
+  for (unsigned int i = 0; i < length; ++i) {
+    text += digits[digest[i] >> 4];
+    text += digits[digest[i] & 15];
+  }
+  return text;
+}
+
+}  // namespace voxref

@@ -6,8 +6,8 @@
 
 namespace voxref {
 
-/// Lets `write` fill a file beside `file`, then renames it there: `file` appears whole or not at all, and what was there
-/// stays when `write` throws. @throws Error with the path when it cannot be created or renamed
+/// Lets `write` fill a file beside `file`, then renames it there: `file` appears whole or not at all, and what was
+/// there stays when `write` throws. @throws Error with the path when it cannot be created or renamed
 void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 void write_atomically(const std::filesystem::path& file, std::span<const std::byte> content);

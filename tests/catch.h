@@ -24,9 +24,8 @@ using Catch::Approx;
 /// @param path relative to the folder that holds `assets` and `gpu`, for instance "assets/scenes/sponza.glb"
 inline std::optional<std::filesystem::path> shared_file(const std::filesystem::path& path) {
   const char* assets = std::getenv("VOXREF_ASSETS");
-  for (const std::filesystem::path& root :
-       {assets ? std::filesystem::path(assets) : std::filesystem::path(),
-        std::filesystem::path(VOXREF_SOURCE_DIR).parent_path() / "shared"})
+  for (const std::filesystem::path& root : {assets ? std::filesystem::path(assets) : std::filesystem::path(),
+                                            std::filesystem::path(VOXREF_SOURCE_DIR).parent_path() / "shared"})
     if (!root.empty() && std::filesystem::exists(root / path)) return root / path;
   return std::nullopt;
 }

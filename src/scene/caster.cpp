@@ -1,1 +1,183 @@
+// The one file that knows about Embree, 3 or 4.
 #include "scene/caster.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <glm/common.hpp>
+#include <vector>
+
+#include "error.h"
+#include "scene/surface.h"
+
+namespace voxref {
+
+namespace {
+
+/// Opaque and masked triangles are two Embree geometries, so that the filter that looks holes up never runs on opaque
+/// ones.
+struct Geometry {
+  const Scene* scene = nullptr;
+  std::vector<uint32_t> triangles;  ///< scene index of each of its triangles, in order
+};
+
+/// Rejects hits in the holes of a mask; Embree then goes on along the ray.
+void reject_holes(const RTCFilterFunctionNArguments* args) {
+  const Geometry& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
+  for (unsigned int i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const uint32_t triangle = geometry.triangles[RTCHitN_primID(args->hit, args->N, i)];
+    const glm::vec2 uv(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
+    if (!covered(*geometry.scene, triangle, uv)) args->valid[i] = 0;
+  }
+}
+
+bool count_bytes(void* counter, ssize_t bytes, bool) {
+  *static_cast<std::atomic<ssize_t>*>(counter) += bytes;
+  return true;
+}
+
+/// Rounding of a point on a surface stays below a few units in the last place of the largest coordinate; 32 of them
+/// leave room and are still four millionths of the scene.
+constexpr float offset_per_coordinate = 32.0f / 8388608.0f;
+
+}  // namespace
+
+struct Caster::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  Geometry opaque, masked;
+  std::atomic<ssize_t> bytes = 0;
+  float offset = 0.0f;
+
+  explicit Impl(const Scene& source) {
+    device = rtcNewDevice(nullptr);
+    if (!device) throw Error("Embree", "cannot start, error " + std::to_string(rtcGetDeviceError(nullptr)));
+    rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
+    scene = rtcNewScene(device);
+    // Robust: without it rays slip through shared edges, and a closed furnace leaks.
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    opaque.scene = masked.scene = &source;
+    for (uint32_t i = 0; i < source.triangles.size(); ++i) {
+      const bool mask = source.materials[source.triangle_materials[i]].alpha_mode == AlphaMode::mask;
+      (mask ? masked : opaque).triangles.push_back(i);
+    }
+    attach(source, opaque, false);
+    attach(source, masked, true);
+    rtcCommitScene(scene);
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+      release();
+      throw Error("Embree", error == RTC_ERROR_OUT_OF_MEMORY ? "no memory for the acceleration structure"
+                                                             : "cannot build, error " + std::to_string(error));
+    }
+    const Bounds bounds = source.bounds();
+    if (!bounds.empty()) {
+      const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+      offset = offset_per_coordinate * std::max({largest.x, largest.y, largest.z});
+    }
+  }
+  ~Impl() { release(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void release() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+    scene = nullptr;
+    device = nullptr;
+  }
+
+  /// Geometry ids follow the order of attachment; an empty geometry is attached too, so that ids stay 0 and 1.
+  void attach(const Scene& source, Geometry& geometry, bool filtered) {
+    RTCGeometry handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!geometry.triangles.empty()) {
+      void* vertices = rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                               source.positions.size());
+      void* indices = rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                              geometry.triangles.size());
+      if (!vertices || !indices) throw std::bad_alloc();
+      std::memcpy(vertices, source.positions.data(), source.positions.size() * sizeof(glm::vec3));
+      for (size_t i = 0; i < geometry.triangles.size(); ++i)
+        static_cast<glm::uvec3*>(indices)[i] = source.triangles[geometry.triangles[i]];
+    }
+    if (filtered) {
+      rtcSetGeometryUserData(handle, &geometry);
+      rtcSetGeometryIntersectFilterFunction(handle, reject_holes);
+      rtcSetGeometryOccludedFilterFunction(handle, reject_holes);
+    }
+    rtcCommitGeometry(handle);
+    rtcAttachGeometry(scene, handle);
+    rtcReleaseGeometry(handle);
+  }
+};
+
+namespace {
+
+void set_ray(RTCRay& target, const Ray& ray) {
+  target.org_x = ray.origin.x;
+  target.org_y = ray.origin.y;
+  target.org_z = ray.origin.z;
+  target.tnear = ray.tmin;
+  target.dir_x = ray.direction.x;
+  target.dir_y = ray.direction.y;
+  target.dir_z = ray.direction.z;
+  target.time = 0.0f;
+  target.tfar = ray.tmax;
+  target.mask = ~0u;
+  target.id = 0;
+  target.flags = 0;
+}
+
+#if RTC_VERSION_MAJOR >= 4
+void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
+void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+#else
+void intersect(RTCScene scene, RTCRayHit& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &ray);
+}
+void occlude(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
+}  // namespace
+
+Caster::Caster(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+Caster::~Caster() = default;
+Caster::Caster(Caster&&) noexcept = default;
+
+Hit Caster::closest(const Ray& ray) const {
+  RTCRayHit query;
+  set_ray(query.ray, ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  intersect(impl_->scene, query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  const Geometry& geometry = query.hit.geomID == 0 ? impl_->opaque : impl_->masked;
+  return {geometry.triangles[query.hit.primID], {query.hit.u, query.hit.v}, query.ray.tfar};
+}
+
+bool Caster::occluded(const Ray& ray) const {
+  RTCRay query;
+  set_ray(query, ray);
+  occlude(impl_->scene, query);
+  return query.tfar < 0.0f;  // Embree marks an occluded ray with tfar = -infinity
+}
+
+float Caster::surface_offset() const { return impl_->offset; }
+
+size_t Caster::bytes() const { return static_cast<size_t>(std::max<ssize_t>(impl_->bytes.load(), 0)); }
+
+}  // namespace voxref

@@ -20,8 +20,8 @@ class Caster {
   /// Whether anything lies between ray.tmin and ray.tmax.
   bool occluded(const Ray& ray) const;
 
-  /// How far a ray's origin must stand off its surface, along the normal, so that rounding cannot put it behind: 32 units
-  /// in the last place of the scene's largest coordinate. World units.
+  /// How far a ray's origin must stand off its surface, along the normal, so that rounding cannot put it behind: 32
+  /// units in the last place of the scene's largest coordinate. World units.
   float surface_offset() const;
 
   /// A ray that leaves a surface at `point` to the side of `normal` (unit).

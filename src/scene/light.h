@@ -11,9 +11,9 @@ enum class LightType : uint8_t { point, spot, directional };
 struct Light {
   std::string name;
   LightType type = LightType::point;
-  glm::vec3 position{0.0f};                 ///< world; point and spot
-  glm::vec3 direction{0.0f, 0.0f, -1.0f};   ///< unit, the way the light travels; spot and directional
-  glm::vec3 intensity{1.0f};                ///< W/sr; directional: irradiance of a facing surface, W/m^2
+  glm::vec3 position{0.0f};                         ///< world; point and spot
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};           ///< unit, the way the light travels; spot and directional
+  glm::vec3 intensity{1.0f};                        ///< W/sr; directional: irradiance of a facing surface, W/m^2
   float cos_inner = 1.0f, cos_outer = 0.70710678f;  ///< spot: full inside the inner cone, none outside the outer
 };
 
@@ -24,8 +24,8 @@ struct Illumination {
   glm::vec3 irradiance{0.0f};  ///< W/m^2 on a surface that faces the light
 };
 
-/// Point: I/d^2. Spot: the same times glTF's angular attenuation, clamp((cos - cos_outer)/(cos_inner - cos_outer), 0, 1)
-/// squared, the denominator at least 0.001. Directional: E. A point on the light itself gets zero.
+/// Point: I/d^2. Spot: the same times glTF's angular attenuation, clamp((cos - cos_outer)/(cos_inner - cos_outer), 0,
+/// 1) squared, the denominator at least 0.001. Directional: E. A point on the light itself gets zero.
 Illumination illuminate(const Light& light, const glm::vec3& point);
 
 }  // namespace voxref

@@ -25,11 +25,11 @@ struct Material {
   float metallic = 1.0f, roughness = 1.0f;
   TextureBinding metallic_roughness_texture;  ///< roughness in G, metallic in B
 
-  float specular = 1.0f;             ///< KHR_materials_specular: strength of the dielectric lobe
-  glm::vec3 specular_color{1.0f};    ///< tint of its F0; F0 itself in the specular-glossiness workflow
-  TextureBinding specular_texture;   ///< strength in A
+  float specular = 1.0f;                  ///< KHR_materials_specular: strength of the dielectric lobe
+  glm::vec3 specular_color{1.0f};         ///< tint of its F0; F0 itself in the specular-glossiness workflow
+  TextureBinding specular_texture;        ///< strength in A
   TextureBinding specular_color_texture;  ///< RGB; in specular-glossiness RGB is F0 and A is glossiness
-  float glossiness = 1.0f;           ///< 1 - perceptual roughness, specular-glossiness only
+  float glossiness = 1.0f;                ///< 1 - perceptual roughness, specular-glossiness only
 
   glm::vec3 emission{0.0f};  ///< radiance, W/(sr m^2): emissiveFactor x emissiveStrength
   TextureBinding emission_texture;
@@ -38,8 +38,8 @@ struct Material {
   float normal_scale = 1.0f;
 
   AlphaMode alpha_mode = AlphaMode::opaque;
-  float alpha_cutoff = 0.5f;   ///< mask: alpha below it is a hole
-  bool double_sided = false;   ///< emission leaves both sides
+  float alpha_cutoff = 0.5f;  ///< mask: alpha below it is a hole
+  bool double_sided = false;  ///< emission leaves both sides
 
   bool emissive() const { return emission != glm::vec3(0.0f); }
 };

@@ -4,8 +4,8 @@
 namespace voxref {
 
 /// How a surface point scatters light, textures looked up: glTF 2.0 appendix B, KHR_materials_specular and
-/// KHR_materials_pbrSpecularGlossiness brought to one form. With s = (1 - |v.h|)^5 (Schlick 1994), D the GGX distribution
-/// and V the height-correlated Smith visibility (Heitz 2014) of width alpha:
+/// KHR_materials_pbrSpecularGlossiness brought to one form. With s = (1 - |v.h|)^5 (Schlick 1994), D the GGX
+/// distribution and V the height-correlated Smith visibility (Heitz 2014) of width alpha:
 ///
 ///   f = diffuse / pi x (1 - (layer_f0 + layer_f1 s)) + D V (specular_f0 + specular_f1 s)
 struct Reflectance {
@@ -16,8 +16,8 @@ struct Reflectance {
   glm::vec3 specular_f1{0.0f};  ///< ... and what is added at grazing
   float alpha = 1.0f;           ///< GGX width: perceptual roughness squared, at least min_alpha
 
-  /// Below this width (perceptual roughness 0.03) float32 no longer resolves the lobe; a smoother material is rendered as
-  /// if it had it.
+  /// Below this width (perceptual roughness 0.03) float32 no longer resolves the lobe; a smoother material is rendered
+  /// as if it had it.
   static constexpr float min_alpha = 0.001f;
 
   bool has_diffuse() const { return diffuse != glm::vec3(0.0f); }
@@ -34,10 +34,13 @@ float ggx_distribution(float n_h, float alpha);
 /// Height-correlated Smith masking-shadowing over 4 (n.l)(n.v): Heitz 2014 eq. 99. @param n_l,n_v in (0,1]
 float ggx_visibility(float n_l, float n_v, float alpha);
 
-/// Directional albedo of the specular lobe: the share of light from direction `n_v` (cosine) that it scatters, per
-/// channel, by numerical integration tabulated once over (n_v, alpha). Error below 0.002.
+/// Directional albedo of the specular lobe: the share of the light from a direction of cosine `n_v` that it scatters
+/// (or, by reciprocity, of uniform light that it sends there), per channel. Numerical integration, tabulated once;
+/// error below 0.002. @param n_v in [0,1]
 glm::vec3 specular_albedo(const Reflectance& reflectance, float n_v);
-/// The same averaged over the cosine-weighted hemisphere, for voxels, which forget where light goes.
+/// The same of the diffuse base, less what the layer over it reflects.
+glm::vec3 diffuse_albedo(const Reflectance& reflectance, float n_v);
+/// Both together, averaged over the cosine-weighted hemisphere: what a voxel keeps, which forgets where light goes.
 glm::vec3 hemispherical_albedo(const Reflectance& reflectance);
 
 }  // namespace voxref

@@ -36,8 +36,9 @@ struct Object {
 /// Vertex arrays that no object needs are empty; the others have one entry per vertex.
 struct Scene {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;   ///< unit; always present
-  std::vector<glm::vec4> tangents;  ///< unit xyz, w = +-1: bitangent = w * cross(normal, tangent.xyz); only for normal maps
+  std::vector<glm::vec3> normals;  ///< unit; always present
+  std::vector<glm::vec4>
+      tangents;  ///< unit xyz, w = +-1: bitangent = w * cross(normal, tangent.xyz); only for normal maps
   std::vector<glm::vec2> uv[2];
   std::vector<glm::vec4> colors;  ///< linear, multiplies the base colour
 

@@ -25,9 +25,9 @@ SurfacePoint surface_point(const Scene& scene, const Hit& hit, const glm::vec3& 
 /// A material's values at a point, textures looked up.
 struct MaterialPoint {
   Reflectance reflectance;
-  glm::vec3 emission{0.0f};   ///< radiance of the emitting side
+  glm::vec3 emission{0.0f};    ///< radiance of the emitting side
   glm::vec3 base_color{0.0f};  ///< linear
-  float opacity = 1.0f;       ///< 1 or, in the holes of a mask, 0
+  float opacity = 1.0f;        ///< 1 or, in the holes of a mask, 0
 };
 
 /// @param uv barycentric coordinates in the triangle, as in Hit

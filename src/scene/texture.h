@@ -23,15 +23,15 @@ struct TextureBinding {
   int image = -1;  ///< index into Scene::images; -1: none
   int uv_set = 0;  ///< 0 or 1
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
-  bool nearest = false;                     ///< the sampler's magnification filter is NEAREST
-  bool srgb = false;                        ///< RGB is sRGB-encoded (alpha never is)
+  bool nearest = false;                       ///< the sampler's magnification filter is NEAREST
+  bool srgb = false;                          ///< RGB is sRGB-encoded (alpha never is)
   glm::mat3x2 transform = glm::mat3x2(1.0f);  ///< KHR_texture_transform: uv' = transform * (u, v, 1)
 
   explicit operator bool() const { return image >= 0; }
 };
 
-/// Looks `binding` up at texture coordinate `uv` (before its transform): texels are decoded to linear values first, then
-/// interpolated bilinearly at full resolution (texel centres at half-integers) unless the sampler says NEAREST.
+/// Looks `binding` up at texture coordinate `uv` (before its transform): texels are decoded to linear values first,
+/// then interpolated bilinearly at full resolution (texel centres at half-integers) unless the sampler says NEAREST.
 /// @param uv finite; components in [0,1] per repetition
 glm::vec4 lookup(const TextureImage& image, const TextureBinding& binding, glm::vec2 uv);
 
