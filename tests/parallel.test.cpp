@@ -1,0 +1,37 @@
+#include "parallel.h"
+
+#include <atomic>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "catch.h"
+
+using namespace voxref;
+
+TEST_CASE("every index is visited once, in ranges that the thread count does not change", "[parallel]") {
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    CHECK(thread_count() == threads);
+    std::vector<std::atomic<int>> visits(1003);
+    std::vector<size_t> ends(11);
+    parallel_for(visits.size(), 100, [&](size_t begin, size_t end) {
+      ends[begin / 100] = end;
+      for (size_t i = begin; i < end; ++i) ++visits[i];
+    });
+    for (const std::atomic<int>& n : visits) REQUIRE(n == 1);
+    for (size_t i = 0; i < 10; ++i) CHECK(ends[i] == 100 * (i + 1));
+    CHECK(ends[10] == 1003);
+  }
+}
+
+TEST_CASE("a body's exception reaches the caller", "[parallel]") {
+  CHECK_THROWS_AS(parallel_for(100, 1,
+                               [](size_t begin, size_t) {
+                                 if (begin == 42) throw std::runtime_error("42");
+                               }),
+                  std::runtime_error);
+  int calls = 0;
+  parallel_for(0, 10, [&](size_t, size_t) { ++calls; });
+  CHECK(calls == 0);
+}
