@@ -1,0 +1,22 @@
+#include <voxref/pipeline.h>
+#include <voxref/reference/path.h>
+
+#include <cstdio>
+
+// Renders an empty scene with both renderers through the installed headers and libraries: the background comes back.
+int main() {
+  const voxref::Scene scene;
+  const voxref::Caster caster(scene);
+  voxref::View view;
+  view.width = view.height = 4;
+  view.camera = voxref::framing_camera(scene);
+  view.background = {0.25f, 0.5f, 0.75f};
+  voxref::Settings settings = voxref::profile("radiometric");
+  settings.grid.resolution = 16;
+  voxref::PathOptions options;
+  options.spp = 2;
+  const glm::vec3 cone = voxref::cone_trace(scene, caster, view, settings).mean;
+  const glm::vec3 path = voxref::path_trace(scene, caster, view, options).mean;
+  std::printf("cone %g %g %g path %g %g %g\n", cone.r, cone.g, cone.b, path.r, path.g, path.b);
+  return cone == view.background && path == view.background ? 0 : 1;
+}
