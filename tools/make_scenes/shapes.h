@@ -1,2 +1,53 @@
 #pragma once
-#include "scene/scene.h"
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace voxref {
+
+/// Triangles on their own, counter-clockwise seen from the front; `normals` are unit, one per vertex, on the front
+/// side. The shapes of this file have their front outside and are centred at the origin unless said.
+struct Mesh {
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::uvec3> triangles;
+};
+
+/// A quadrilateral, counter-clockwise seen from the front, cut along a-c. A twisted one (its corners in no plane) gets
+/// six vertices, so that each triangle has its own normal; a flat one four.
+Mesh quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d);
+/// An axis-aligned box with flat faces: 24 vertices, 12 triangles.
+Mesh box(const glm::vec3& min, const glm::vec3& max);
+/// A square of the given side in the plane y = 0, front upwards.
+Mesh plane(float side);
+
+/// Twenty flat faces, vertices at distance 1.
+Mesh icosahedron();
+/// The icosahedron with every edge halved `subdivisions` times and its vertices pushed out to distance 1: 20 x 4^n
+/// triangles, smooth normals. @throws Error unless subdivisions is in [0, 8]
+Mesh icosphere(int subdivisions);
+/// A closed convex interior between a sphere (power 2) and a box: |x|^p + |y|^p + |z|^p = 1, scaled to `half_extent`.
+/// An octahedron with every edge halved `subdivisions` times, projected: 8 x 4^n triangles; smooth normals, from the
+/// gradient.
+Mesh rounded_box(const glm::vec3& half_extent, float power, int subdivisions);
+
+/// Bodies of revolution about +Y, smooth around and sharp at the rims; `segments` (at least 3) around the axis.
+Mesh cone(float radius, float height, int segments);      ///< apex up, closed by a base: 2 segments triangles
+Mesh cylinder(float radius, float height, int segments);  ///< closed by two caps: 4 segments triangles
+/// Radii of the ring's centre line and of its tube; `sides` around the tube: 2 segments sides triangles.
+Mesh torus(float ring_radius, float tube_radius, int segments, int sides);
+
+/// The same surface seen from the other side.
+Mesh flipped(Mesh mesh);
+/// Every triangle with three vertices of its own, which carry its face normal.
+Mesh flat_shaded(const Mesh& mesh);
+Mesh moved(Mesh mesh, const glm::vec3& offset);
+Mesh scaled(Mesh mesh, float factor);
+/// Turned by `degrees` about the axis (unit) through the origin, counter-clockwise seen from the axis's tip.
+Mesh rotated(Mesh mesh, float degrees, const glm::vec3& axis);
+/// Appends `part` to `mesh`.
+void append(Mesh& mesh, const Mesh& part);
+
+/// Sum of the triangles' areas, in double.
+double area(const Mesh& mesh);
+
+}  // namespace voxref
