@@ -1,1 +1,121 @@
 #include "reference/path.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <limits>
+#include <string>
+
+#include "reference/film.h"
+#include "reference/pass.h"
+
+namespace voxref {
+
+namespace {
+
+// Each pass adds one randomization to every pixel. More samples per pass are better stratified, and so less noisy; more
+// passes tell the error better: with R of them the standard error is itself known to 1 / sqrt(2 (R - 1)). From 16
+// passes on, 18 %, it serves; so a known number of samples is cut in 16 to 31 passes of a power of two, at which Sobol
+// points are best balanced, and a shorter pass where that leaves a rest.
+constexpr int least_passes = 16;
+
+// Where the number of samples is open (a noise or a time to reach) it doubles after each 16 passes from the 32nd on:
+// passes stay short against the whole, and the scatter is always that of about 48 equal ones.
+constexpr int most_doublings = 20;
+
+int samples_of_pass(int pass, const PathOptions& options) {
+  if (!options.noise && !options.seconds)
+    return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(1, options.spp / least_passes))));
+  return 1 << std::clamp(pass / least_passes - 1, 0, most_doublings);
+}
+
+void check(const PathOptions& options, const View& view) {
+  (void)Image(view.width, view.height);  // refuses a bad size before anything is allocated
+  if (options.spp < 0) throw Error("spp", std::to_string(options.spp) + " is below 0");
+  if (options.spp == 0 && !options.noise && !options.seconds)
+    throw Error("spp", "0, no limit, needs a noise or a time at which to stop");
+  if (options.noise && !(*options.noise > 0.0)) throw Error("noise", "must be above 0");
+  if (options.seconds && !(*options.seconds > 0.0)) throw Error("time", "must be above 0 seconds");
+  if (options.max_depth && *options.max_depth < 0)
+    throw Error("max-depth", std::to_string(*options.max_depth) + " is below 0");
+}
+
+/// How far a render is, between two passes.
+struct Standing {
+  int passes = 0, samples = 0;
+  double seconds = 0.0;
+  double noise = std::numeric_limits<double>::infinity();  ///< unknown before there are enough passes
+};
+
+int most_samples(const PathOptions& options) { return options.spp > 0 ? options.spp : std::numeric_limits<int>::max(); }
+
+/// Samples of the next pass; 0 when the goal is reached. There is always a first pass.
+int next_samples(const PathOptions& options, const Standing& now) {
+  const int samples = std::min(samples_of_pass(now.passes, options), most_samples(options) - now.samples);
+  if (now.passes == 0) return samples;
+  // The noise is a mean over the image: what a single pixel happened to find has next to no say in when it stops, and
+  // so stopping does not bias the pixel.
+  if (options.noise && now.noise <= *options.noise) return 0;
+  // A pass that would end too late is not begun.
+  if (options.seconds && now.seconds + now.seconds / now.samples * samples > *options.seconds) return 0;
+  return samples;
+}
+
+/// Finished fraction of the work after `samples` further samples.
+double finished(const PathOptions& options, const Standing& now, double samples, double seconds) {
+  const double taken = now.samples + samples;
+  double fraction = taken / most_samples(options);
+  if (options.seconds) fraction = std::max(fraction, seconds / *options.seconds);
+  // The error falls with the square root of the samples.
+  if (options.noise && now.samples > 0)
+    fraction = std::max(fraction, *options.noise * *options.noise / (now.noise * now.noise) * taken / now.samples);
+  return std::min(fraction, 1.0);
+}
+
+std::string describe(const SamplePlace& place, int width) {
+  const size_t columns = static_cast<size_t>(width);
+  return "pixel (" + std::to_string(place.pixel % columns) + ", " + std::to_string(place.pixel / columns) +
+         ") sample " + std::to_string(place.sample);
+}
+
+}  // namespace
+
+PathResult path_trace(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options,
+                      const Progress& progress) {
+  check(options, view);
+  PassRenderer renderer(scene, caster, view, options.max_depth, options.seed);
+  Film film(view.width, view.height);
+  PathResult result;
+  PassCounts counts;
+  Standing now;
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const auto seconds = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+
+  while (const int samples = next_samples(options, now)) {
+    const std::optional<PassCounts> pass = renderer.render(
+        {now.passes, samples, now.samples}, progress,
+        [&](double fraction) { progress("path tracing", finished(options, now, fraction * samples, seconds())); });
+    if (!pass) {
+      if (now.passes == 0) throw Interrupted();
+      result.interrupted = true;
+      break;
+    }
+    film.add(renderer.batches(), samples);
+    counts.add(*pass);
+    now = {film.passes(), film.samples(), seconds(), now.noise};
+    if (options.noise && now.passes >= least_passes) now.noise = film.noise();
+  }
+
+  result.image = film.image();
+  result.mean = film.mean();
+  result.mean_stderr = film.mean_stderr();
+  result.spp = now.samples;
+  result.seconds = now.seconds;
+  result.rays = counts.paths.rays;
+  result.nonfinite = counts.paths.nonfinite;
+  if (result.nonfinite > 0) result.first_nonfinite = describe(counts.first_nonfinite, view.width);
+  return result;
+}
+
+}  // namespace voxref

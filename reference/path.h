@@ -11,22 +11,24 @@
 namespace voxref {
 
 struct PathOptions {
-  int spp = 64;                    ///< samples per pixel; with noise or seconds: the most that is taken, 0 = no limit
-  std::optional<double> noise;     ///< stop when mean standard error / mean value, as luminance over the image, is at most this
-  std::optional<double> seconds;   ///< stop after this time
-  std::optional<int> max_depth;    ///< 0: emission only, 1: direct, 2: one indirect bounce ...; none: Russian roulette alone
+  int spp = 64;  ///< samples per pixel; with noise or seconds: the most that is taken, 0 = no limit
+  std::optional<double>
+      noise;  ///< stop when mean standard error / mean value, as luminance over the image, is at most this
+  std::optional<double> seconds;  ///< stop after this time
+  std::optional<int>
+      max_depth;  ///< 0: emission only, 1: direct, 2: one indirect bounce ...; none: Russian roulette alone
   uint64_t seed = 0;
 };
 
 struct PathResult {
-  Image image;                     ///< layers of cli.md for `path`, plus stderr.Y and stderr.indirect.Y (luminance)
+  Image image;  ///< layers of cli.md for `path`, plus stderr.Y and stderr.indirect.Y (luminance)
   glm::vec3 mean{0.0f}, mean_stderr{0.0f};  ///< of R,G,B over the image
-  int spp = 0;                     ///< samples taken per pixel
-  double seconds = 0;              ///< of the render loop
-  uint64_t rays = 0;               ///< closest-hit plus occlusion rays of the render loop
-  uint64_t nonfinite = 0;          ///< contributions that were NaN or infinite; they are left out of the sums
-  std::string first_nonfinite;     ///< "pixel (x, y) sample n", empty when there is none
-  bool interrupted = false;        ///< stopped by the caller: `spp` is what there was time for
+  int spp = 0;                              ///< samples taken per pixel
+  double seconds = 0;                       ///< of the render loop
+  uint64_t rays = 0;                        ///< closest-hit plus occlusion rays of the render loop
+  uint64_t nonfinite = 0;                   ///< contributions that were NaN or infinite; they are left out of the sums
+  std::string first_nonfinite;              ///< "pixel (x, y) sample n", empty when there is none
+  bool interrupted = false;                 ///< stopped by the caller: `spp` is what there was time for
 };
 
 /// Path traces the view: unidirectional, next-event estimation with multiple importance sampling, Russian roulette. The

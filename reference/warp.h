@@ -1,1 +1,58 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <numbers>
+
+namespace voxref {
+
+// Maps of the unit square to where light goes. Directions are in a local frame whose z axis is the normal; each map's
+// density is stated with it. All keep stratification: neighbouring inputs have neighbouring outputs.
+
+/// Two unit vectors that complete `z` (unit) to a right-handed orthonormal frame: Duff et al. 2017, "Building an
+/// Orthonormal Basis, Revisited".
+struct Frame {
+  explicit Frame(const glm::vec3& normal) : z(normal) {
+    const float sign = std::copysign(1.0f, normal.z);
+    const float a = -1.0f / (sign + normal.z);
+    const float b = normal.x * normal.y * a;
+    x = {1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
+    y = {b, sign + normal.y * normal.y * a, -normal.y};
+  }
+  glm::vec3 to_world(const glm::vec3& local) const { return local.x * x + local.y * y + local.z * z; }
+  glm::vec3 to_local(const glm::vec3& world) const {
+    return {glm::dot(world, x), glm::dot(world, y), glm::dot(world, z)};
+  }
+
+  glm::vec3 x, y, z;
+};
+
+/// Hemisphere about +z with density cos / pi per solid angle (Malley: a uniform disk, lifted).
+inline glm::vec3 cosine_hemisphere(const glm::vec2& u) {
+  const float radius = std::sqrt(u.x);
+  const float angle = 2.0f * std::numbers::pi_v<float> * u.y;
+  return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0f - u.x)};
+}
+
+/// Barycentric coordinates (u,v) of a uniform point of a triangle, as in Hit; density 1 / area.
+inline glm::vec2 uniform_triangle(const glm::vec2& u) {
+  const float root = std::sqrt(u.x);
+  return {root * (1.0f - u.y), root * u.y};
+}
+
+/// A microfacet normal of the GGX distribution of width `alpha`, as often as `out` sees it; density per solid angle
+/// G1(out) D(h) max(out.h, 0) / out.z. Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
+/// @param out unit, z above 0
+inline glm::vec3 visible_ggx_normal(const glm::vec3& out, float alpha, const glm::vec2& u) {
+  // Stretched by alpha the facets become a hemisphere, whose reflections of `out` fill a spherical cap evenly.
+  const glm::vec3 stretched = glm::normalize(glm::vec3(alpha * out.x, alpha * out.y, out.z));
+  const float angle = 2.0f * std::numbers::pi_v<float> * u.x;
+  const float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
+  const float radius = std::sqrt(std::clamp(1.0f - z * z, 0.0f, 1.0f));
+  const glm::vec3 half = stretched + glm::vec3(radius * std::cos(angle), radius * std::sin(angle), z);
+  return glm::normalize(glm::vec3(alpha * half.x, alpha * half.y, std::max(half.z, 0.0f)));
+}
+
+}  // namespace voxref

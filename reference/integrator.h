@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "reference/light_sampling.h"
+#include "reference/sampler.h"
+#include "scene/caster.h"
+#include "scene/surface.h"
+
+namespace voxref {
+
+/// What one path, or the mean of many, brings to a pixel: radiance by the number of times the light was scattered.
+struct Layers {
+  glm::vec3 emission{0.0f};  ///< 0: sources and the background, seen directly
+  glm::vec3 direct{0.0f};    ///< 1: straight from a source to what the camera sees
+  glm::vec3 indirect{0.0f};  ///< 2 and more
+
+  glm::vec3& scattered(int times) { return times == 0 ? emission : times == 1 ? direct : indirect; }
+};
+
+/// Where a path is: a surface, or outside the scene.
+struct PathVertex {
+  std::optional<SurfacePoint> surface;
+  glm::vec3 to_previous{0.0f};  ///< unit, towards the vertex before
+  float distance = 0.0f;        ///< from there, world units
+};
+
+/// Counted along the way; integers, so that their sum does not depend on the order.
+struct PathCounts {
+  uint64_t rays = 0;       ///< closest-hit plus occlusion rays
+  uint64_t nonfinite = 0;  ///< contributions that were NaN or infinite and were left out
+};
+
+/// Estimates the rendering equation (thesis eq. 1.17) along single paths, from the camera: at each vertex the light is
+/// sampled (next-event estimation) and the BSDF is; where both find emissive triangles, they are weighed by the power
+/// heuristic (Veach and Guibas 1995). Immutable, keeps references; any number of threads may trace at once.
+class Integrator {
+ public:
+  /// @param max_depth as PathOptions::max_depth
+  Integrator(const Scene& scene, const Caster& caster, const glm::vec3& background, std::optional<int> max_depth);
+
+  /// The vertex that a camera ray (unit direction) finds.
+  PathVertex cast(const Ray& ray, PathCounts& counts) const;
+  /// One path from its first vertex on; dimension 0 of the sampler is left to the caller.
+  Layers trace(const PathVertex& camera_vertex, const Sampler& sampler, PathCounts& counts) const;
+
+ private:
+  struct State;
+  glm::vec3 emitted(const State& state) const;
+  void add_punctual(State& state, const class Bsdf& bsdf) const;
+  void add_emitters(State& state, const class Bsdf& bsdf) const;
+  bool scatter(State& state, const class Bsdf& bsdf) const;
+
+  const Scene& scene_;
+  const Caster& caster_;
+  LightSampler lights_;
+  glm::vec3 background_;
+  int max_depth_;
+  bool light_can_be_hit_;  // there are emissive surfaces or a background
+};
+
+}  // namespace voxref
