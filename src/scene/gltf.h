@@ -9,9 +9,9 @@
 namespace voxref {
 
 struct LoadOptions {
-  std::optional<double> time;         ///< seconds into the file's animations; none: they are ignored
-  std::vector<std::string> dynamic;   ///< names of further nodes whose objects (and their descendants') are dynamic
-  float light_scale = 1.0f;           ///< multiplies every light's intensity and all emission
+  std::optional<double> time;        ///< seconds into the file's animations; none: they are ignored
+  std::vector<std::string> dynamic;  ///< names of further nodes whose objects (and their descendants') are dynamic
+  float light_scale = 1.0f;          ///< multiplies every light's intensity and all emission
 };
 
 /// Loads a glTF 2.0 file (.gltf or .glb) and checks it: every index, range, size and number that later stages rely on.
