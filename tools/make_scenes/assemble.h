@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "make_scenes/shapes.h"
+#include "make_scenes/mesh.h"
 #include "scene/scene.h"
 
 namespace voxref {

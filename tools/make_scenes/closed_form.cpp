@@ -4,6 +4,7 @@
 #include "error.h"
 #include "make_scenes/assemble.h"
 #include "make_scenes/builders.h"
+#include "make_scenes/shapes.h"
 
 namespace voxref {
 namespace {

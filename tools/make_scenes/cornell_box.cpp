@@ -6,6 +6,7 @@
 
 #include "make_scenes/assemble.h"
 #include "make_scenes/builders.h"
+#include "make_scenes/shapes.h"
 #include "make_scenes/spectrum.h"
 
 // Corners in millimetres, in the order in which Cornell publishes them: counter-clockwise seen from the room.
@@ -105,12 +106,12 @@ Scene glossy_spheres() {
     glm::vec3 color;
     float metallic;
   };
-  // Gold's reflectance at normal incidence in linear sRGB; a red dielectric, whose lobe is white; and one of each half.
-  const std::array<Row, 3> rows = {{{"gold", {1.0f, 0.766f, 0.336f}, 1.0f},
-                                    {"plastic", {0.6f, 0.1f, 0.1f}, 0.0f},
-                                    {"lacquer", {0.3f, 0.4f, 0.8f}, 0.5f}}};
+  // A red dielectric, whose lobe is white; half dielectric, half metal; gold's reflectance at normal incidence.
+  const std::array<Row, 3> rows = {{{"plastic", {0.6f, 0.1f, 0.1f}, 0.0f},
+                                    {"lacquer", {0.3f, 0.4f, 0.8f}, 0.5f},
+                                    {"gold", {1.0f, 0.766f, 0.336f}, 1.0f}}};
   const std::array<float, 3> roughness = {0.1f, 0.4f, 0.8f};
-  const Mesh sphere = scaled(icosphere(4), 0.07f);
+  const Mesh sphere = scaled(icosphere(3), 0.07f);
   for (size_t row = 0; row < rows.size(); ++row)
     for (size_t column = 0; column < roughness.size(); ++column) {
       Material material;

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <glm/common.hpp>
+
+#include <utility>
 
 #include "error.h"
 #include "make_scenes/assemble.h"
 #include "make_scenes/builders.h"
+#include "make_scenes/shapes.h"
 #include "make_scenes/teapot.h"
 
 namespace voxref {
@@ -23,7 +24,7 @@ Mesh object_mesh(const std::string& name, const ObjectDetail& detail) {
   if (name == "cube") return box(glm::vec3(-0.4f), glm::vec3(0.4f));
   if (name == "sphere") return scaled(icosphere(detail.subdivisions), 0.5f);
   if (name == "cone") return cone(0.45f, 1.0f, detail.segments);
-  if (name == "torus") return torus(0.35f, 0.15f, detail.segments, detail.segments / 2);
+  if (name == "torus") return torus(0.35f, 0.15f, detail.segments, std::max(3, detail.segments / 2));
   if (name == "plane") return rotated(plane(0.9f), 60.0f, {1.0f, 0.0f, 0.0f});
   if (name == "cylinder") return cylinder(0.35f, 0.9f, detail.segments);
   if (name == "teapot") return scaled(teapot(detail.teapot), 0.2f);

@@ -1,16 +1,8 @@
 #pragma once
-#include <cstdint>
-#include <glm/vec3.hpp>
-#include <vector>
+#include "make_scenes/mesh.h"
 
+// Shapes have their front outside and are centred at the origin unless said.
 namespace voxref {
-
-/// Triangles on their own, counter-clockwise seen from the front; `normals` are unit, one per vertex, on the front
-/// side. The shapes of this file have their front outside and are centred at the origin unless said.
-struct Mesh {
-  std::vector<glm::vec3> positions, normals;
-  std::vector<glm::uvec3> triangles;
-};
 
 /// A quadrilateral, counter-clockwise seen from the front, cut along a-c. A twisted one (its corners in no plane) gets
 /// six vertices, so that each triangle has its own normal; a flat one four.
@@ -35,19 +27,5 @@ Mesh cone(float radius, float height, int segments);      ///< apex up, closed b
 Mesh cylinder(float radius, float height, int segments);  ///< closed by two caps: 4 segments triangles
 /// Radii of the ring's centre line and of its tube; `sides` around the tube: 2 segments sides triangles.
 Mesh torus(float ring_radius, float tube_radius, int segments, int sides);
-
-/// The same surface seen from the other side.
-Mesh flipped(Mesh mesh);
-/// Every triangle with three vertices of its own, which carry its face normal.
-Mesh flat_shaded(const Mesh& mesh);
-Mesh moved(Mesh mesh, const glm::vec3& offset);
-Mesh scaled(Mesh mesh, float factor);
-/// Turned by `degrees` about the axis (unit) through the origin, counter-clockwise seen from the axis's tip.
-Mesh rotated(Mesh mesh, float degrees, const glm::vec3& axis);
-/// Appends `part` to `mesh`.
-void append(Mesh& mesh, const Mesh& part);
-
-/// Sum of the triangles' areas, in double.
-double area(const Mesh& mesh);
 
 }  // namespace voxref
