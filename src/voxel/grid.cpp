@@ -1,1 +1,66 @@
 #include "voxel/grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <string>
+
+#include "error.h"
+
+namespace voxref {
+
+namespace {
+
+constexpr int min_resolution = 16, max_resolution = 2048;
+constexpr int margins = 3;   // two of 1.5 voxels
+constexpr int min_side = 4;  // below it a coarse level would be all margin
+// A surface without depth along an axis gets an odd count, so that it lies at voxel centres too.
+constexpr int flat_side = 5;
+// Extents that are whole voxels but for rounding shall not grow by a voxel.
+constexpr double rounding = 1e-4;
+
+/// Largest coordinate, in absolute value.
+double reach(const Bounds& bounds) {
+  double largest = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(double(bounds.min[axis])), std::abs(double(bounds.max[axis]))});
+  return largest;
+}
+
+int voxels_along(double extent, double voxel) {
+  if (extent <= rounding * voxel) return flat_side;
+  return std::max(min_side, int(std::ceil(extent / voxel - rounding)) + margins);
+}
+
+}  // namespace
+
+Grid fit_grid(const Bounds& bounds, const GridOptions& options) {
+  if (options.resolution < min_resolution || options.resolution > max_resolution)
+    throw Error("grid.resolution", std::to_string(options.resolution) + " is outside " +
+                                       std::to_string(min_resolution) + " to " + std::to_string(max_resolution));
+
+  const glm::dvec3 low = bounds.empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.min);
+  const glm::dvec3 high = bounds.empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.max);
+  const glm::dvec3 center = 0.5 * (low + high), extent = high - low;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+
+  Grid grid;
+  if (!(longest > 0.0)) {
+    grid.size = glm::ivec3(min_side);
+    grid.min = glm::vec3(center - 0.5 * min_side);
+    return grid;
+  }
+  grid.voxel = float(longest / (options.resolution - margins));
+  const double spacing = reach(bounds) * std::numeric_limits<float>::epsilon();  // of float32 numbers out there
+  if (!std::isfinite(grid.voxel) || grid.voxel < std::numeric_limits<float>::min() || grid.voxel < 4.0 * spacing)
+    throw Error("grid", "voxels of " + std::to_string(grid.voxel) + " world units cannot be told apart in float32 at " +
+                            "coordinates up to " + std::to_string(reach(bounds)) + "; lower grid.resolution");
+  for (int axis = 0; axis < 3; ++axis)
+    // The longest axis is known without rounding.
+    grid.size[axis] = extent[axis] == longest ? options.resolution : voxels_along(extent[axis], grid.voxel);
+  grid.min = glm::vec3(center - 0.5 * double(grid.voxel) * glm::dvec3(grid.size));
+  return grid;
+}
+
+}  // namespace voxref

@@ -26,8 +26,10 @@ struct Grid {
 };
 
 /// Fits a grid around `bounds`: h = longest side / (resolution - 3), at least 4 voxels a side, the box centred, at least
-/// 1.5 voxels of margin, so that walls on the bounds of the longest axis lie at voxel centres rather than on voxel faces.
-/// Empty or point-like bounds give a 4^3 grid of unit voxels around them. @throws Error for a resolution out of range
+/// 1.5 voxels of margin, so that walls on the bounds of the longest axis lie at voxel centres rather than on voxel faces;
+/// so does a scene that is flat along an axis, which gets 5 voxels there. Empty or point-like bounds give a 4^3 grid of
+/// unit voxels around them. Spec section 1 (radiometric).
+/// @throws Error for a resolution out of range, or where float32 coordinates cannot tell such voxels apart
 Grid fit_grid(const Bounds& bounds, const GridOptions& options);
 
 }  // namespace voxref

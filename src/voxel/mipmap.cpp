@@ -1,1 +1,171 @@
 #include "voxel/mipmap.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "parallel.h"
+
+namespace voxref {
+
+namespace {
+
+/// The children of a texel, [x][y][z] by their position in the 2x2x2 block.
+template <class Texel>
+using Block = std::array<std::array<std::array<Texel, 2>, 2>, 2>;
+
+/// Positions in a block of the four columns along each axis, as the two other coordinates in ascending axis order, in the
+/// order in which the published shaders add them (spec section 4): float sums then have the same bits.
+constexpr int columns[3][4][2] = {
+    {{1, 1}, {1, 0}, {0, 1}, {0, 0}},  // x: (y,z)
+    {{1, 1}, {1, 0}, {0, 0}, {0, 1}},  // y: (x,z)
+    {{1, 1}, {1, 0}, {0, 0}, {0, 1}},  // z: (x,y)
+};
+
+/// The block's texel in column `column` along `axis`, at position `along` on that axis.
+template <class Texel>
+const Texel& in_column(const Block<Texel>& block, int axis, int column, int along) {
+  const auto [p, q] = columns[axis][column];
+  return axis == 0 ? block[along][p][q] : axis == 1 ? block[p][along][q] : block[p][q][along];
+}
+
+/// What a ray towards a face's direction sees of a texel of the level below; the base looks the same from everywhere.
+const glm::vec4& seen(const glm::vec4& base, size_t) { return base; }
+const glm::vec4& seen(const DirectionalTexel& texel, size_t face) { return texel[face]; }
+
+/// Rounding of the sum of columns can reach one unit in the last place above full opacity.
+glm::vec4 opaque_at_most(glm::vec4 texel) {
+  texel.a = std::min(texel.a, 1.0f);
+  return texel;
+}
+
+template <class Texel>
+DirectionalTexel filter_anisotropic(const Block<Texel>& block) {
+  DirectionalTexel result;
+  for (size_t face = 0; face < 6; ++face) {
+    const int axis = int(face) / 2;
+    const int front = face % 2 == 0 ? 1 : 0;  // towards the negative side a ray meets the higher coordinate first
+    glm::vec4 sum(0.0f);
+    for (int column = 0; column < 4; ++column) {
+      const glm::vec4& near = seen(in_column(block, axis, column, front), face);
+      const glm::vec4& far = seen(in_column(block, axis, column, 1 - front), face);
+      sum += near;
+      sum += far * (1.0f - near.a);
+    }
+    result[face] = opaque_at_most(0.25f * sum);
+  }
+  return result;
+}
+
+template <class Texel>
+DirectionalTexel filter_isotropic(const Block<Texel>& block) {
+  glm::vec4 sum(0.0f);
+  for (const auto& plane : block)
+    for (const auto& row : plane)
+      for (const Texel& texel : row) sum += seen(texel, 0);
+  DirectionalTexel result;
+  result.fill(opaque_at_most(0.125f * sum));
+  return result;
+}
+
+/// Bricks of the next level that have a brick below them, z slowest.
+template <class Texel>
+std::vector<glm::ivec3> parents(const BrickVolume<Texel>& fine, const BrickVolume<DirectionalTexel>& coarse) {
+  const glm::ivec3 size = coarse.brick_grid(), below = fine.brick_grid();
+  std::vector<uint8_t> wanted(size_t(size.x) * size_t(size.y) * size_t(size.z));
+  const auto index = [&](int x, int y, int z) { return size_t(x) + size_t(size.x) * (y + size_t(size.y) * z); };
+  for (int z = 0; z < below.z; ++z)
+    for (int y = 0; y < below.y; ++y)
+      for (int x = 0; x < below.x; ++x)
+        if (fine.slot({x, y, z}) != fine.absent) wanted[index(x / 2, y / 2, z / 2)] = 1;
+
+  std::vector<glm::ivec3> bricks;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x)
+        if (wanted[index(x, y, z)]) bricks.emplace_back(x, y, z);
+  return bricks;
+}
+
+/// Fills the eighth of a coarse brick that one fine brick lies under: `octant` in {0,1}^3.
+template <class Texel>
+void filter_octant(std::span<const Texel, BrickVolume<Texel>::texels_per_brick> fine, const glm::ivec3& octant,
+                   MipmapFilter filter, std::span<DirectionalTexel, BrickVolume<Texel>::texels_per_brick> coarse) {
+  constexpr int half = BrickVolume<Texel>::side / 2;
+  for (int z = 0; z < half; ++z)
+    for (int y = 0; y < half; ++y)
+      for (int x = 0; x < half; ++x) {
+        Block<Texel> block;
+        for (int i = 0; i < 8; ++i) {
+          const glm::ivec3 corner(i & 1, (i >> 1) & 1, i >> 2);
+          block[corner.x][corner.y][corner.z] =
+              fine[BrickVolume<Texel>::offset(2 * glm::ivec3(x, y, z) + corner)];
+        }
+        coarse[BrickVolume<Texel>::offset(half * octant + glm::ivec3(x, y, z))] =
+            filter == MipmapFilter::anisotropic ? filter_anisotropic(block) : filter_isotropic(block);
+      }
+}
+
+/// One level from the one below. Sides are even in bricks, so a 2x2x2 block never crosses a brick, and texels of a brick
+/// that stick out of the volume are empty like those of absent bricks.
+template <class Texel>
+BrickVolume<DirectionalTexel> coarser(const BrickVolume<Texel>& fine, MipmapFilter filter, const Progress& progress) {
+  BrickVolume<DirectionalTexel> coarse((fine.size() + 1) / 2);
+  const std::vector<glm::ivec3> bricks = parents(fine, coarse);
+  coarse.allocate(bricks);
+  parallel_for(bricks.size(), 4, [&](size_t begin, size_t end) {
+    progress.check();
+    for (size_t i = begin; i < end; ++i)
+      for (int child = 0; child < 8; ++child) {
+        const glm::ivec3 octant(child & 1, (child >> 1) & 1, child >> 2), below = 2 * bricks[i] + octant;
+        if (below.x >= fine.brick_grid().x || below.y >= fine.brick_grid().y || below.z >= fine.brick_grid().z)
+          continue;
+        const uint32_t slot = fine.slot(below);
+        if (slot != fine.absent)
+          filter_octant<Texel>(fine.brick(slot), octant, filter, coarse.brick(uint32_t(i)));
+      }
+  });
+  return coarse;
+}
+
+/// The base volume of shaded surfaces.
+BrickVolume<glm::vec4> premultiplied(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance) {
+  BrickVolume<glm::vec4> base(surfaces.grid.size);
+  base.allocate(occupied_bricks(surfaces));
+  parallel_for(surfaces.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const float opacity = surfaces.albedo[i].a;
+      base(surfaces.voxels[i]) = glm::vec4(opacity * radiance[i], opacity);
+    }
+  });
+  return base;
+}
+
+}  // namespace
+
+size_t Pyramid::bytes() const {
+  size_t total = base.bytes();
+  for (const auto& level : levels) total += level.bytes();
+  return total;
+}
+
+Pyramid mipmap(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance, const MipmapOptions& options,
+               const Progress& progress) {
+  assert(radiance.size() == surfaces.size());
+  return mipmap(surfaces.grid, premultiplied(surfaces, radiance), options, progress);
+}
+
+Pyramid mipmap(const Grid& grid, BrickVolume<glm::vec4> base, const MipmapOptions& options, const Progress& progress) {
+  assert(base.size() == grid.size);
+  Pyramid pyramid{grid, std::move(base), {}};
+  const auto finished = [](const glm::ivec3& size) { return size.x <= 1 && size.y <= 1 && size.z <= 1; };
+  if (!finished(grid.size)) pyramid.levels.push_back(coarser(pyramid.base, options.filter, progress));
+  while (!pyramid.levels.empty() && !finished(pyramid.levels.back().size())) {
+    // Each level is an eighth of the one below.
+    progress("mipmap", 1.0 - std::pow(0.125, double(pyramid.levels.size())));
+    pyramid.levels.push_back(coarser(pyramid.levels.back(), options.filter, progress));
+  }
+  progress("mipmap", 1.0);
+  return pyramid;
+}
+
+}  // namespace voxref
