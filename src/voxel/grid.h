@@ -11,9 +11,9 @@ struct GridOptions {
 
 /// A box of cubic voxels. Voxel (x,y,z) covers min + h [x,x+1) x [y,y+1) x [z,z+1).
 struct Grid {
-  glm::ivec3 size{0};    ///< voxels per side
-  glm::vec3 min{0.0f};   ///< world
-  float voxel = 1.0f;    ///< side of a voxel, world units
+  glm::ivec3 size{0};   ///< voxels per side
+  glm::vec3 min{0.0f};  ///< world
+  float voxel = 1.0f;   ///< side of a voxel, world units
 
   glm::vec3 max() const { return min + voxel * glm::vec3(size); }
   glm::vec3 center(const glm::ivec3& v) const { return min + voxel * (glm::vec3(v) + 0.5f); }
@@ -25,10 +25,10 @@ struct Grid {
   size_t voxel_count() const { return size_t(size.x) * size_t(size.y) * size_t(size.z); }
 };
 
-/// Fits a grid around `bounds`: h = longest side / (resolution - 3), at least 4 voxels a side, the box centred, at least
-/// 1.5 voxels of margin, so that walls on the bounds of the longest axis lie at voxel centres rather than on voxel faces;
-/// so does a scene that is flat along an axis, which gets 5 voxels there. Empty or point-like bounds give a 4^3 grid of
-/// unit voxels around them. Spec section 1 (radiometric).
+/// Fits a grid around `bounds`: h = longest side / (resolution - 3), at least 4 voxels a side, the box centred, at
+/// least 1.5 voxels of margin, so that walls on the bounds of the longest axis lie at voxel centres rather than on
+/// voxel faces; so does a scene that is flat along an axis, which gets 5 voxels there. Empty or point-like bounds give
+/// a 4^3 grid of unit voxels around them. Spec section 1 (radiometric).
 /// @throws Error for a resolution out of range, or where float32 coordinates cannot tell such voxels apart
 Grid fit_grid(const Bounds& bounds, const GridOptions& options);
 

@@ -13,8 +13,8 @@ namespace {
 template <class Texel>
 using Block = std::array<std::array<std::array<Texel, 2>, 2>, 2>;
 
-/// Positions in a block of the four columns along each axis, as the two other coordinates in ascending axis order, in the
-/// order in which the published shaders add them (spec section 4): float sums then have the same bits.
+/// Positions in a block of the four columns along each axis, as the two other coordinates in ascending axis order, in
+/// the order in which the published shaders add them (spec section 4): float sums then have the same bits.
 constexpr int columns[3][4][2] = {
     {{1, 1}, {1, 0}, {0, 1}, {0, 0}},  // x: (y,z)
     {{1, 1}, {1, 0}, {0, 0}, {0, 1}},  // y: (x,z)
@@ -97,16 +97,15 @@ void filter_octant(std::span<const Texel, BrickVolume<Texel>::texels_per_brick> 
         Block<Texel> block;
         for (int i = 0; i < 8; ++i) {
           const glm::ivec3 corner(i & 1, (i >> 1) & 1, i >> 2);
-          block[corner.x][corner.y][corner.z] =
-              fine[BrickVolume<Texel>::offset(2 * glm::ivec3(x, y, z) + corner)];
+          block[corner.x][corner.y][corner.z] = fine[BrickVolume<Texel>::offset(2 * glm::ivec3(x, y, z) + corner)];
         }
         coarse[BrickVolume<Texel>::offset(half * octant + glm::ivec3(x, y, z))] =
             filter == MipmapFilter::anisotropic ? filter_anisotropic(block) : filter_isotropic(block);
       }
 }
 
-/// One level from the one below. Sides are even in bricks, so a 2x2x2 block never crosses a brick, and texels of a brick
-/// that stick out of the volume are empty like those of absent bricks.
+/// One level from the one below. Sides are even in bricks, so a 2x2x2 block never crosses a brick, and texels of a
+/// brick that stick out of the volume are empty like those of absent bricks.
 template <class Texel>
 BrickVolume<DirectionalTexel> coarser(const BrickVolume<Texel>& fine, MipmapFilter filter, const Progress& progress) {
   BrickVolume<DirectionalTexel> coarse((fine.size() + 1) / 2);
@@ -120,8 +119,7 @@ BrickVolume<DirectionalTexel> coarser(const BrickVolume<Texel>& fine, MipmapFilt
         if (below.x >= fine.brick_grid().x || below.y >= fine.brick_grid().y || below.z >= fine.brick_grid().z)
           continue;
         const uint32_t slot = fine.slot(below);
-        if (slot != fine.absent)
-          filter_octant<Texel>(fine.brick(slot), octant, filter, coarse.brick(uint32_t(i)));
+        if (slot != fine.absent) filter_octant<Texel>(fine.brick(slot), octant, filter, coarse.brick(uint32_t(i)));
       }
   });
   return coarse;

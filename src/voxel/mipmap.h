@@ -13,7 +13,8 @@
 
 namespace voxref {
 
-/// Directional volumes, named after the way a ray travels: a ray towards -x reads neg_x and meets the higher-x texel first.
+/// Directional volumes, named after the way a ray travels: a ray towards -x reads neg_x and meets the higher-x texel
+/// first.
 enum class Face : uint8_t { neg_x, pos_x, neg_y, pos_y, neg_z, pos_z };
 inline constexpr std::array<std::string_view, 6> face_names = {"neg_x", "pos_x", "neg_y", "pos_y", "neg_z", "pos_z"};
 
@@ -39,13 +40,14 @@ struct Pyramid {
   size_t bytes() const;
 };
 
-/// Spec section 4. For each of the four columns of a 2x2x2 block along the face's axis front + back (1 - alpha_front), all
-/// four channels premultiplied; the value is the mean of the four columns.
+/// Spec section 4. For each of the four columns of a 2x2x2 block along the face's axis front + back (1 - alpha_front),
+/// all four channels premultiplied; the value is the mean of the four columns.
 /// @param radiance one per occupied voxel, as `shade` returns it (not premultiplied)
 Pyramid mipmap(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance, const MipmapOptions& options,
                const Progress& progress = {});
 
 /// The same from a base volume alone, for volumes that somebody else made.
-Pyramid mipmap(const Grid& grid, BrickVolume<glm::vec4> base, const MipmapOptions& options, const Progress& progress = {});
+Pyramid mipmap(const Grid& grid, BrickVolume<glm::vec4> base, const MipmapOptions& options,
+               const Progress& progress = {});
 
 }  // namespace voxref

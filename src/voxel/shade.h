@@ -27,7 +27,4 @@ struct ShadeOptions {
 std::vector<glm::vec3> shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces,
                              const ShadeOptions& options, const Progress& progress = {});
 
-/// Mean normals shorter than this come from surfaces that face away from each other: their direction says nothing.
-inline constexpr float two_sided_length = 0.25f;
-
 }  // namespace voxref

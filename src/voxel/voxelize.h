@@ -18,22 +18,32 @@ struct VoxelizeOptions {
   VoxelOpacity opacity = VoxelOpacity::occupied;
 };
 
-/// The occupied voxels of a grid: what the surfaces in each are like on average, weighted by area. Structure of arrays, one
-/// entry per occupied voxel, sorted by index z, y, x. Empty space takes no memory.
+/// The occupied voxels of a grid: what the surfaces in each are like on average, weighted by area. Structure of arrays,
+/// one entry per occupied voxel, sorted by index z, y, x. Empty space takes no memory.
 struct SurfaceGrid {
   Grid grid;
-  std::vector<glm::ivec3> voxels;    ///< index of each occupied voxel
-  std::vector<glm::vec4> albedo;     ///< rgb in [0,1], linear: diffuse albedo plus that of the specular lobe; a = opacity
-  std::vector<glm::vec3> normal;     ///< mean of unit normals, out of the front; length in [0,1] tells their spread
-  std::vector<glm::vec3> centroid;   ///< world
-  std::vector<glm::vec3> emission;   ///< mean emitted radiance, W/(sr m^2); empty: nothing in the scene emits
+  std::vector<glm::ivec3> voxels;  ///< index of each occupied voxel
+  std::vector<float> area;         ///< of the surface in the voxel, square world units; empty: read from volumes
+  std::vector<glm::vec4> albedo;   ///< rgb in [0,1], linear: diffuse albedo plus that of the specular lobe; a = opacity
+  std::vector<glm::vec3> normal;   ///< mean of unit normals, out of the front; length in [0,1] tells their spread
+  std::vector<glm::vec3> centroid;  ///< world
+  std::vector<glm::vec3> emission;  ///< mean emitted radiance, W/(sr m^2); empty: nothing in the scene emits
   size_t size() const { return voxels.size(); }
   size_t bytes() const;
 };
 
-/// Clips every triangle against every voxel that it overlaps (26-separating) and weighs each piece by its area: mean albedo,
-/// normal, emission and centroid do not depend on triangle order, thread count or tessellation beyond rounding. Area on a
-/// face shared by two voxels counts half to each. Holes of alpha masks have no area. Spec section 2 (exact).
-SurfaceGrid voxelize(const Scene& scene, const Grid& grid, const VoxelizeOptions& options, const Progress& progress = {});
+/// Mean normals shorter than this come from surfaces that face away from each other: their direction says nothing.
+inline constexpr float two_sided_length = 0.25f;
+
+/// Clips every triangle against every voxel that it overlaps (26-separating) and weighs each piece by its area: mean
+/// albedo, normal, emission and centroid do not depend on triangle order, thread count or tessellation beyond rounding.
+/// Normals are the interpolated vertex normals, without normal maps. Area on a face shared by two voxels counts half to
+/// each. Holes of alpha masks have no area; triangles without area contribute nothing. Spec section 2 (exact).
+/// @param grid any; surfaces outside it are left out
+SurfaceGrid voxelize(const Scene& scene, const Grid& grid, const VoxelizeOptions& options,
+                     const Progress& progress = {});
+
+/// Brick coordinates (see BrickVolume) of the bricks that hold occupied voxels, sorted z, y, x.
+std::vector<glm::ivec3> occupied_bricks(const SurfaceGrid& surfaces);
 
 }  // namespace voxref

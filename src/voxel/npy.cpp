@@ -1,0 +1,1 @@
+#include "voxel/npy.h"
