@@ -59,7 +59,11 @@ Grid fit_grid(const Bounds& bounds, const GridOptions& options) {
   for (int axis = 0; axis < 3; ++axis)
     // The longest axis is known without rounding.
     grid.size[axis] = extent[axis] == longest ? options.resolution : voxels_along(extent[axis], grid.voxel);
-  grid.min = glm::vec3(center - 0.5 * double(grid.voxel) * glm::dvec3(grid.size));
+  const glm::dvec3 half = 0.5 * double(grid.voxel) * glm::dvec3(grid.size);
+  grid.min = glm::vec3(center - half);
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(center[axis]) + half[axis] > std::numeric_limits<float>::max())
+      throw Error("grid", "the scene and its margin reach beyond what float32 can express");
   return grid;
 }
 
