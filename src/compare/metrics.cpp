@@ -1,1 +1,195 @@
 #include "compare/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "compare/flip.h"
+#include "compare/ssim.h"
+#include "error.h"
+
+namespace voxref {
+
+namespace {
+
+using Layer = std::array<std::span<const float>, 3>;
+
+glm::vec3 pixel(const Layer& layer, size_t i) { return {layer[0][i], layer[1][i], layer[2][i]}; }
+
+/// sRGB transfer function, IEC 61966-2-1, of a value in [0,1].
+float encode(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+/// What the first three metrics compare: luminance of both sides and of the standard error, per pixel.
+struct Compared {
+  std::vector<double> cone, path;
+  std::span<const float> standard_error;
+};
+
+Compared compared(const Image& cone, const Image& path, bool indirect_only) {
+  Compared result;
+  const auto lum = [](const glm::vec3& rgb) { return double{luminance(rgb)}; };
+  const size_t count = cone.pixel_count();
+  result.cone.resize(count);
+  result.path.resize(count);
+  if (indirect_only) {
+    const Layer diffuse = cone.layer("diffuse"), specular = cone.layer("specular"), indirect = path.layer("indirect");
+    for (size_t i = 0; i < count; ++i) {
+      result.cone[i] = lum(pixel(diffuse, i)) + lum(pixel(specular, i));
+      result.path[i] = lum(pixel(indirect, i));
+    }
+    result.standard_error = path.channel("stderr.indirect.Y");
+  } else {
+    const Layer a = cone.layer(""), b = path.layer("");
+    for (size_t i = 0; i < count; ++i) {
+      result.cone[i] = lum(pixel(a, i));
+      result.path[i] = lum(pixel(b, i));
+    }
+    result.standard_error = path.channel("stderr.Y");
+  }
+  return result;
+}
+
+void count_nonfinite(Metrics& metrics, const Image& cone, const Image& path, const Compared& values) {
+  const Layer a = cone.layer(""), b = path.layer("");
+  const auto finite = [](const glm::vec3& v) { return std::isfinite(v.r) && std::isfinite(v.g) && std::isfinite(v.b); };
+  const auto note = [&](const char* side, size_t i) {
+    const auto width = static_cast<size_t>(cone.width());
+    if (metrics.first_nonfinite.empty())
+      metrics.first_nonfinite =
+          std::string(side) + " pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) + ")";
+  };
+  for (size_t i = 0; i < values.cone.size(); ++i) {
+    if (!std::isfinite(values.cone[i]) || !finite(pixel(a, i))) {
+      ++metrics.nonfinite_cone;
+      note("cone", i);
+    }
+    if (!std::isfinite(values.path[i]) || !std::isfinite(values.standard_error[i]) || !finite(pixel(b, i))) {
+      ++metrics.nonfinite_path;
+      note("path", i);
+    }
+  }
+}
+
+void measure_luminance(Metrics& metrics, const Compared& values) {
+  const auto count = static_cast<double>(values.cone.size());
+  double cone = 0.0, path = 0.0, difference = 0.0, noise = 0.0;
+  for (size_t i = 0; i < values.cone.size(); ++i) {
+    const double d = values.cone[i] - values.path[i], s = values.standard_error[i];
+    cone += values.cone[i] / count;
+    path += values.path[i] / count;
+    difference += d * d / count;
+    noise += s * s / count;
+  }
+  const double error = std::sqrt(std::max(0.0, difference - noise));
+  metrics.mean_ratio = cone / path;
+  metrics.rel_error = error == 0.0 ? 0.0 : error / path;
+  metrics.noise_share = noise / difference;
+}
+
+void measure_radiance(Metrics& metrics, const Layer& cone, const Layer& path) {
+  const double count = 3.0 * static_cast<double>(cone[0].size());
+  double squares = 0.0, relative = 0.0;
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t i = 0; i < cone[c].size(); ++i) {
+      const double a = cone[c][i], b = path[c][i], square = (a - b) * (a - b);
+      squares += square / count;
+      relative += square / (b * b + 0.01) / count;
+    }
+  metrics.rmse = std::sqrt(squares);
+  metrics.relmse = relative;
+}
+
+/// psnr, ssim and flip, of what a display shows: radiance x 2^exposure, clipped to [0,1].
+void measure_pictures(Metrics& metrics, const Image& cone, const Image& path, float exposure) {
+  const float scale = std::exp2(exposure);
+  const size_t count = cone.pixel_count();
+  double squares = 0.0;
+  std::array<std::vector<glm::vec3>, 2> linear;
+  std::array<std::vector<float>, 2> luma;
+  std::array<std::vector<glm::vec3>, 2> encoded;
+  const std::array<Layer, 2> layers = {cone.layer(""), path.layer("")};
+  for (size_t side = 0; side < 2; ++side) {
+    linear[side].resize(count);
+    luma[side].resize(count);
+    encoded[side].resize(count);
+    for (size_t i = 0; i < count; ++i) {
+      const glm::vec3 shown = glm::clamp(pixel(layers[side], i) * scale, 0.0f, 1.0f);
+      linear[side][i] = shown;
+      encoded[side][i] = {encode(shown.r), encode(shown.g), encode(shown.b)};
+      luma[side][i] = luminance(encoded[side][i]);  // BT.709 luma: the same weights on encoded values
+    }
+  }
+  for (size_t i = 0; i < count; ++i) {
+    const glm::dvec3 difference = glm::dvec3(encoded[0][i]) - glm::dvec3(encoded[1][i]);
+    squares += glm::dot(difference, difference);
+  }
+  metrics.psnr = -10.0 * std::log10(squares / (3.0 * static_cast<double>(count)));
+  metrics.ssim = ssim(cone.width(), cone.height(), luma[0], luma[1]);
+  double sum = 0.0;
+  for (const float value : flip_map(cone.width(), cone.height(), linear[1], linear[0])) sum += double{value};
+  metrics.flip = sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+Metrics compare(const Image& cone, const Image& path, bool indirect_only, float exposure) {
+  if (cone.width() != path.width() || cone.height() != path.height())
+    throw Error("comparison", "sizes differ, " + std::to_string(cone.width()) + "x" + std::to_string(cone.height()) +
+                                  " and " + std::to_string(path.width()) + "x" + std::to_string(path.height()));
+  Metrics metrics;
+  metrics.indirect_only = indirect_only;
+  const Compared values = compared(cone, path, indirect_only);
+  count_nonfinite(metrics, cone, path, values);
+  if (metrics.nonfinite_cone + metrics.nonfinite_path > 0) {
+    metrics.mean_ratio = metrics.rel_error = metrics.noise_share = metrics.rmse = metrics.relmse = metrics.psnr =
+        metrics.ssim = metrics.flip = std::numeric_limits<double>::quiet_NaN();
+    return metrics;
+  }
+  measure_luminance(metrics, values);
+  measure_radiance(metrics, cone.layer(""), path.layer(""));
+  measure_pictures(metrics, cone, path, exposure);
+  return metrics;
+}
+
+nlohmann::json to_json(const Metrics& metrics) {
+  const auto number = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
+  nlohmann::json json = {{"of", metrics.indirect_only ? "indirect" : "rgb"},
+                         {"mean_ratio", number(metrics.mean_ratio)},
+                         {"rel_error", number(metrics.rel_error)},
+                         {"noise_share", number(metrics.noise_share)},
+                         {"rmse", number(metrics.rmse)},
+                         {"relmse", number(metrics.relmse)},
+                         {"relmse_formula", Metrics::relmse_formula},
+                         {"psnr", number(metrics.psnr)},
+                         {"ssim", number(metrics.ssim)},
+                         {"flip", number(metrics.flip)},
+                         {"nonfinite_cone", metrics.nonfinite_cone},
+                         {"nonfinite_path", metrics.nonfinite_path},
+                         {"first_nonfinite", nullptr}};
+  if (!metrics.first_nonfinite.empty()) json["first_nonfinite"] = metrics.first_nonfinite;
+  return json;
+}
+
+float auto_exposure(const Image& image) {
+  constexpr double percentile = 0.99;
+  constexpr float shown_as = 0.9f;  // of the display's white: bright surfaces stay below clipping, lamps do not matter
+  constexpr float most_stops = 64.0f;  // 2^exposure stays finite for images that are black but for rounding
+  const Layer layer = image.layer("");
+  std::vector<float> values;
+  for (size_t i = 0; i < image.pixel_count(); ++i)
+    if (const float value = luminance(pixel(layer, i)); std::isfinite(value)) values.push_back(value);
+  if (values.empty()) return 0.0f;
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(percentile * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), rank, values.end());
+  if (*rank <= 0.0f) return 0.0f;
+  return std::clamp(std::log2(shown_as) - std::log2(*rank), -most_stops, most_stops);
+}
+
+}  // namespace voxref
