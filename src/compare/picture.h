@@ -10,20 +10,25 @@
 
 namespace voxref {
 
+using Color = std::array<uint8_t, 3>;  ///< sRGB
+
+/// What a pixel that is NaN or infinite looks like in every picture: magenta, which no colour map contains.
+inline constexpr Color nonfinite_color = {255, 0, 255};
+
 /// 8-bit RGB ready to be shown, rows from the top.
 struct Picture {
   int width = 0, height = 0;
   std::vector<uint8_t> rgb;  ///< 3 * width * height
 };
 
-/// A colour map: control points at equal distances over [0,1], sRGB bytes, linear in between.
-using ColorMap = std::span<const std::array<uint8_t, 3>>;
-/// Blue, grey, red: Moreland 2009, "Diverging Color Maps for Scientific Visualization", his table.
+/// Control points at equal distances over [0,1], linear in between.
+using ColorMap = std::span<const Color>;
+/// Blue, grey, red: Moreland 2009, "Diverging Color Maps for Scientific Visualization".
 ColorMap cool_warm();
 /// Black, purple, orange, pale yellow, perceptually uniform: inferno of van der Walt and Smith 2015 (matplotlib).
 ColorMap inferno();
-/// @param t clamped to [0,1] @return grey-green (0, 160, 0) for NaN, a colour that neither map contains
-std::array<uint8_t, 3> map_color(ColorMap map, float t);
+/// @param t clamped to [0,1]; nonfinite_color for NaN and infinity
+Color map_color(ColorMap map, float t);
 
 /// One number per pixel, and the range that its colours span.
 struct ValueMap {
@@ -32,20 +37,22 @@ struct ValueMap {
   float low = 0, high = 1;  ///< the ends of the colour bar
 };
 
-/// Luminance of cone - path, radiance. The bar is symmetric: the 99th percentile of the absolute value, rounded up to
-/// 1, 2 or 5 times a power of ten (1 where the images are equal).
+/// Luminance of cone - path, radiance: negative (blue) where the cone tracer is darker. The bar is symmetric: the 99th
+/// percentile of the absolute value, rounded up to 1, 2 or 5 times a power of ten; 1 where the images are equal.
 ValueMap signed_difference(const Image& cone, const Image& path);
 /// |cone - path| / max(path, floor) of the luminances, floor = 1 % of the path-traced mean, over [0,1].
 ValueMap relative_error(const Image& cone, const Image& path);
-/// Standard error of the path-traced luminance (stderr.Y), radiance, over [0, rounded 99th percentile].
+/// Standard error of the path-traced luminance (stderr.Y), radiance, over [0, 99th percentile, rounded up as above].
 ValueMap noise(const Image& path);
 
-/// The map in colours with its colour bar and the numbers of its ends, middle below it.
-Picture draw(const ValueMap& map, ColorMap colors);
 /// The layer as displayed: x 2^exposure, clipped, sRGB.
 Picture display(const Image& image, std::string_view layer, float exposure);
-/// Pictures of equal height side by side, `gap` white pixels between.
-Picture side_by_side(std::span<const Picture> pictures, int gap = 8);
+/// The map in colours.
+Picture paint(const ValueMap& map, ColorMap colors);
+/// The same with a bar of the colours below it, and the numbers of the bar's ends and middle.
+Picture paint_with_bar(const ValueMap& map, ColorMap colors);
+/// Pictures of equal height side by side, white between them.
+Picture side_by_side(std::span<const Picture> pictures);
 
 /// A PNG file, whole or not at all. @throws Error with the path when it cannot be written
 void write_png(const std::filesystem::path& file, const Picture& picture);

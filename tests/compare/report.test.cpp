@@ -1,1 +1,163 @@
+#include "compare/report.h"
+
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
 #include "catch.h"
+#include "compare/synthetic.h"
+#include "file.h"
+#include "image/image_file.h"
+
+using voxref::CheckReport;
+using voxref::Image;
+using voxref::testing::add_noise;
+using voxref::testing::cone_image;
+using voxref::testing::path_image;
+using voxref::testing::wavy;
+
+namespace {
+
+CheckReport report_of(const Image& cone, const Image& path) {
+  const float exposure = voxref::auto_exposure(path);
+  return {
+      "cornell_box_point.gltf",
+      cone,
+      path,
+      compare(cone, path, true, exposure),
+      exposure,
+      0.25,
+      {{"mean", {0.3, 0.2, 0.3}},
+       {"seconds",
+        {{"voxelize", 0.41}, {"shade", 0.02}, {"mipmap", 0.08}, {"bounce", 1.3}, {"cone_trace", 2.2}, {"total", 4.01}}},
+       {"bytes", {{"surfaces", 1200000}, {"base", 2400000}, {"levels", 4100000}, {"total", 7700000}}},
+       {"voxels_occupied", 31415}},
+      {{"mean", {0.3, 0.2, 0.3}}, {"spp", 64}, {"seconds", 12.5}},
+      {{"version", "0.1.0"},
+       {"command_line", "voxref check \"scenes/<a> & 'b'.gltf\" -o out"},
+       {"scene_sha256", std::string(64, 'a')},
+       {"settings", {{"grid", {{"resolution", 128}}}, {"cone", {{"step", 0.5}}}}},
+       {"seed", 0}}};
+}
+
+/// A folder that is gone when the test is.
+struct TemporaryFolder {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / "voxref_report_test";
+  TemporaryFolder() { std::filesystem::remove_all(path); }
+  ~TemporaryFolder() { std::filesystem::remove_all(path); }
+};
+
+/// The start tags that nothing closes, and the end tags that nothing opened, of a page without optional ones.
+std::vector<std::string> unbalanced(const std::string& html) {
+  std::vector<std::string> open, wrong;
+  for (size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
+    const bool end = html[at + 1] == '/';
+    const size_t first = at + (end ? 2 : 1);
+    const std::string name = html.substr(first, html.find_first_of(" >\n", first) - first);
+    static constexpr std::array<const char*, 3> without_end = {"meta", "input", "!DOCTYPE"};
+    if (std::find(without_end.begin(), without_end.end(), name) != without_end.end()) continue;
+    if (!end) {
+      open.push_back(name);
+      if (name == "script") at = html.find("</script", at) - 1;  // its content is no markup
+    } else if (!open.empty() && open.back() == name) {
+      open.pop_back();
+    } else {
+      wrong.push_back(name);
+    }
+  }
+  wrong.insert(wrong.end(), open.begin(), open.end());
+  return wrong;
+}
+
+}  // namespace
+
+TEST_CASE("The result of a check holds the keys that scripts read", "[compare]") {
+  const Image cone = cone_image(64, 48, wavy), path = path_image(64, 48, wavy);
+  CheckReport report = report_of(cone, path);
+  nlohmann::json result = check_result(report);
+  for (const char* key : {"path", "cone", "metrics", "within_budget", "provenance"}) CHECK(result.contains(key));
+  for (const char* key :
+       {"mean_ratio", "rel_error", "rmse", "relmse", "relmse_formula", "psnr", "ssim", "flip", "noise_share"})
+    CHECK(result["metrics"].contains(key));
+  CHECK(result["path"]["spp"] == 64);
+  CHECK(result["cone"]["voxels_occupied"] == 31415);
+
+  CHECK(result["within_budget"] == true);
+  report.metrics.rel_error = 0.26;
+  CHECK(check_result(report)["within_budget"] == false);
+  report.metrics.rel_error = std::numeric_limits<double>::quiet_NaN();  // an error that cannot be told is not within
+  CHECK(check_result(report)["within_budget"] == false);
+  report.budget.reset();
+  CHECK(check_result(report)["within_budget"].is_null());
+}
+
+TEST_CASE("The report page stands alone, escapes what it shows and has balanced tags", "[compare]") {
+  const Image cone = cone_image(64, 48, wavy), path = path_image(64, 48, wavy);
+  CheckReport report = report_of(cone, path);
+  report.title = "</title><script>alert(1)</script> {{data}}";
+  const std::string page = report_page(report);
+  for (const char* outside : {"http:", "https:", "src=", "@import", "url("})
+    CHECK(page.find(outside) == std::string::npos);
+  CHECK(page.find("<script>alert") == std::string::npos);
+  CHECK(page.find("&lt;script&gt;alert(1)&lt;/script&gt; {{data}}") != std::string::npos);
+  CHECK(page.find("scenes/&lt;a&gt; &amp; &#39;b&#39;.gltf") != std::string::npos);
+  CHECK(unbalanced(page).empty());
+}
+
+TEST_CASE("The report page of a noisy 512x512 check stays below 3 MiB, and so does that of a larger one", "[compare]") {
+  for (const int side : {512, 1100}) {
+    Image cone = cone_image(side, side, wavy), path = path_image(side, side, wavy, 0.3f);
+    for (const char* layer : {"", "direct", "diffuse"}) add_noise(cone, layer, 0.1f, 1);
+    for (const char* layer : {"", "direct", "indirect"}) add_noise(path, layer, 0.1f, 2);
+    CheckReport report = report_of(cone_image(8, 8, wavy), path_image(8, 8, wavy));
+    const CheckReport noisy{
+        report.title,     cone, path, report.metrics, 0.0f, report.budget, report.cone_result, report.path_result,
+        report.provenance};
+    const std::string page = report_page(noisy);
+    CHECK(page.size() < 3 * 1024 * 1024);
+    CHECK(page.find("\"name\":\"total\"") != std::string::npos);
+    CHECK((page.find("shown reduced by 3") != std::string::npos) == (side == 1100));
+  }
+}
+
+TEST_CASE("A check leaves its images, pictures, result and page in the folder", "[compare]") {
+  const TemporaryFolder folder;
+  const Image cone = cone_image(64, 48, wavy), path = path_image(64, 48, wavy, 0.01f);
+  write_check(folder.path / "new" / "folder", report_of(cone, path));
+  for (const char* name : {"cone.exr", "path.exr", "cone.png", "path.png", "difference.png", "relative_error.png",
+                           "noise.png", "comparison.png", "result.json", "report.html"})
+    CHECK(std::filesystem::exists(folder.path / "new" / "folder" / name));
+  const Image read = voxref::read_image(folder.path / "new" / "folder" / "cone.exr");
+  CHECK(read.channel("specular.G")[100] == cone.channel("specular.G")[100]);
+  const auto result = nlohmann::json::parse(voxref::read_file(folder.path / "new" / "folder" / "result.json"));
+  CHECK(result["metrics"]["mean_ratio"] == 1.0);
+}
+
+TEST_CASE("The page runs in a browser without script errors and shows the pixel's values", "[compare]") {
+  if (std::system("chromium --version >/dev/null 2>&1") != 0) VOXREF_SKIP("chromium is not installed");
+  const TemporaryFolder folder;
+  // 0.78125 = 200/256 and 0.1953125 survive the page's 8-bit mantissas; odd sides and several PNG rows per exponent
+  // row.
+  const auto radiance = [](int x, int y) {
+    return x == 15 && y == 10 ? glm::vec3(0.78125f, 0.1953125f, 0.0f) : wavy(x, y);
+  };
+  Image cone = cone_image(31, 21, radiance), path = path_image(31, 21, wavy);
+  cone.channel("R")[0] = std::numeric_limits<float>::quiet_NaN();
+  write_check(folder.path, report_of(cone, path));
+  const std::string browser =
+      "chromium --headless --no-sandbox --disable-gpu --disable-background-networking "
+      "--user-data-dir=" +
+      (folder.path / "profile").string();
+  const std::string dump = (folder.path / "dom.html").string();
+  REQUIRE(std::system((browser + " --virtual-time-budget=5000 --dump-dom file://" +
+                       (folder.path / "report.html").string() + "#difference >" + dump + " 2>/dev/null")
+                          .c_str()) == 0);
+  const std::string dom = voxref::read_file(dump);
+  CHECK(dom.find("data-state=\"ready\"") != std::string::npos);
+  CHECK(dom.find("pixel (15, 10)") != std::string::npos);  // the middle one, until the pointer moves
+  CHECK(dom.find("<tr id=\"readout-cone\"><th "
+                 "scope=\"row\">cone</th><td>0.781</td><td>0.195</td><td>0</td><td>0.306</td></tr>") !=
+        std::string::npos);
+  CHECK(dom.find("cone darker") != std::string::npos);
+}
