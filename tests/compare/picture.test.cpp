@@ -12,6 +12,7 @@
 
 using voxref::Color;
 using voxref::Image;
+using voxref::map_color;
 using voxref::Picture;
 using voxref::ValueMap;
 using voxref::testing::cone_image;
@@ -20,7 +21,7 @@ using voxref::testing::wavy;
 
 namespace {
 constexpr auto flat = [](float value) { return [value](int, int) { return glm::vec3(value); }; };
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 Color pixel_of(const Picture& picture, int x, int y) {
   const auto i = static_cast<size_t>(3 * (y * picture.width + x));
@@ -34,7 +35,7 @@ TEST_CASE("Colour maps have their published ends and middle, and show what is no
   CHECK(map_color(voxref::cool_warm(), 2.0f) == Color{180, 4, 38});
   CHECK(map_color(voxref::inferno(), -1.0f) == Color{0, 0, 4});
   CHECK(map_color(voxref::inferno(), 1.0f) == Color{252, 255, 164});
-  CHECK(map_color(voxref::inferno(), nan) == voxref::nonfinite_color);
+  CHECK(map_color(voxref::inferno(), not_a_number) == voxref::nonfinite_color);
 }
 
 TEST_CASE("Inferno grows lighter all along", "[compare]") {
@@ -86,7 +87,7 @@ TEST_CASE("The relative error is over the reference, or over one percent of its 
 TEST_CASE("A pixel that is not finite is marked in every picture", "[compare]") {
   Image cone = cone_image(8, 8, wavy);
   Image path = path_image(8, 8, wavy, 0.1f);
-  cone.channel("R")[9] = nan;
+  cone.channel("R")[9] = not_a_number;
   path.channel("stderr.Y")[9] = std::numeric_limits<float>::infinity();
   CHECK(pixel_of(display(cone, "", 0.0f), 1, 1) == voxref::nonfinite_color);
   CHECK(pixel_of(paint(signed_difference(cone, path), voxref::cool_warm()), 1, 1) == voxref::nonfinite_color);
