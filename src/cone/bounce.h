@@ -21,10 +21,17 @@ struct BounceResult {
   double gain = 0.0;                ///< last addition over the one before (loop gain); 0 with fewer than two bounces
 };
 
-/// L_0 = `direct`; L_(k+1) = L_0 + albedo/pi E(L_k), gathered with cones at every occupied voxel and filtered again after
-/// each. Spec section 6. @throws Error when the additions do not shrink (gain at or above 1)
+/// L_0 = `direct`; L_(k+1) = L_0 + albedo/pi E(L_k), gathered with cones at every occupied voxel and filtered again
+/// after each. Spec section 6. A voxel gathers over the hemisphere of its mean normal; where opposite normals cancel
+/// (shorter than two_sided_length) over both hemispheres, and takes the mean. Additions are compared as sums of
+/// luminance over the voxels. @throws Error when they do not shrink (gain at or above 1)
 BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, const BounceOptions& options,
                     const ConeOptions& cone, const MipmapOptions& mipmap, const glm::vec3& background,
                     const Progress& progress = {});
+
+/// The same where `direct` is filtered already; takes over that pyramid's memory.
+BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, Pyramid&& filtered,
+                    const BounceOptions& options, const ConeOptions& cone, const MipmapOptions& mipmap,
+                    const glm::vec3& background, const Progress& progress = {});
 
 }  // namespace voxref

@@ -8,12 +8,12 @@ namespace voxref {
 struct Cone {
   glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< unit, in a frame whose z is the normal
   float weight = 0.0f;                    ///< cosine integral over the cone's cell, sr; a set sums to pi
-  float tan_half_angle = 0.0f;            ///< of the circular cone with the cell's solid angle
+  float tan_half_angle = 0.0f;            ///< of the circular cone with the cell's solid angle, at most tan 60 degrees
 };
 
-/// Cones that partition the hemisphere into cells of equal solid angle: a polar cap and rings around it, ring counts chosen
-/// so that cells are about as wide as high (after Beckers and Beckers 2012). A cone points along its cell's
-/// cosine-weighted mean direction. @param count 1 to 16384 @throws Error out of range
+/// Cones that partition the hemisphere into cells of equal solid angle: a polar cap and rings around it, ring counts
+/// chosen so that cells are about as wide as high (after Beckers and Beckers 2012); two and three cones are sectors. A
+/// cone points along its cell's cosine-weighted mean direction. @param count 1 to 16384 @throws Error out of range
 std::vector<Cone> partition_hemisphere(int count);
 
 /// How well circular cones stand in for their cells, as fractions of the hemisphere's solid angle, by quadrature.
@@ -26,8 +26,9 @@ Coverage coverage(const std::vector<Cone>& cones);
 /// Right-handed orthonormal frame around unit `normal`: columns tangent, bitangent, normal. Duff et al. 2017.
 glm::mat3 frame_around(const glm::vec3& normal);
 
-/// Tangent of the half-angle of the cone that a GGX lobe of width alpha is gathered with, at normal incidence: a uniform
-/// cone with the same mean direction length as the lobe (Toksvig 2005 turned round).
+/// Tangent of the half-angle of the cone that a GGX lobe of width alpha is gathered with, at normal incidence: a
+/// uniform cone with the same mean direction length as the lobe (Toksvig 2005 turned round). @param alpha in [0,1];
+/// below Reflectance::min_alpha as there
 float specular_tan_half_angle(float alpha);
 
 }  // namespace voxref

@@ -1,1 +1,65 @@
 #include "cone/gather.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace voxref {
+namespace {
+
+/// A cone's apex over a surface, so far out that the surface's own voxels no longer count.
+struct Apex {
+  glm::vec3 position;
+  OwnPlane own;
+};
+
+Apex apex_over(const Medium& medium, const GatherPoint& point, const ConeOptions& options) {
+  // The surface's voxels and the filter are cubes: they reach furthest, by the 1-norm, along a diagonal normal.
+  const glm::vec3& n = point.geometric_normal;
+  const float height = options.start * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  return {point.position + height * medium.texels.grid.voxel * n, {n, height}};
+}
+
+}  // namespace
+
+DiffuseGather gather_diffuse(const Medium& medium, const std::vector<Cone>& cones, const GatherPoint& point,
+                             const ConeOptions& options, const AoOptions& ao, const glm::vec3& background) {
+  const Apex apex = apex_over(medium, point, options);
+  const glm::mat3 frame = frame_around(point.shading_normal);
+  const glm::ivec3& size = medium.texels.grid.size;
+  MarchOptions march_options{options.step, background, 0.0f};
+  if (ao.enabled) march_options.falloff = ao.falloff / static_cast<float>(std::max({size.x, size.y, size.z}));
+
+  DiffuseGather result;
+  float occlusion = 0.0f;
+  for (const Cone& cone : cones) {
+    const glm::vec3 direction = frame * cone.direction;
+    if (glm::dot(direction, point.geometric_normal) <= 0.0f) {
+      occlusion += cone.weight;
+      continue;
+    }
+    const ConeSample seen = march(medium, apex.position, direction, cone.tan_half_angle, apex.own, march_options);
+    result.irradiance += cone.weight * seen.radiance;
+    occlusion += cone.weight * seen.occlusion;
+  }
+  if (ao.enabled) result.openness = std::clamp(1.0f - occlusion / std::numbers::pi_v<float>, 0.0f, 1.0f);
+  return result;
+}
+
+glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const glm::vec3& to_viewer, float alpha,
+                          const ConeOptions& options, const glm::vec3& background) {
+  const glm::vec3 mirrored = glm::reflect(-to_viewer, point.shading_normal);
+  if (glm::dot(mirrored, point.geometric_normal) <= 0.0f) return glm::vec3(0.0f);
+  const Apex apex = apex_over(medium, point, options);
+  return march(medium, apex.position, mirrored, specular_tan_half_angle(alpha), apex.own,
+               {options.step, background, 0.0f})
+      .radiance;
+}
+
+float gather_visibility(const Medium& medium, const GatherPoint& point, const glm::vec3& target, float tan_half_angle,
+                        const ConeOptions& options) {
+  return 1.0f - march_opacity(medium, apex_over(medium, point, options).position, target, tan_half_angle, options.step);
+}
+
+}  // namespace voxref

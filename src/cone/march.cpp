@@ -1,1 +1,130 @@
 #include "cone/march.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "cone/lookup.h"
+
+namespace voxref {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Where less than this is left to be seen, the last sample's colour stands for it: a wall of one voxel is as opaque.
+constexpr float opaque_transmittance = 1e-4f;
+
+struct Interval {
+  float begin, end;
+};
+
+/// The part of a ray inside the box [0, size], in multiples of `direction`; begin >= end: none.
+Interval clip(const glm::vec3& origin, const glm::vec3& direction, const glm::vec3& size) {
+  Interval inside{0.0f, infinity};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float o = origin[axis], d = direction[axis];
+    if (d == 0.0f) {
+      if (o < 0.0f || o > size[axis]) return {0.0f, 0.0f};
+      continue;
+    }
+    const float a = -o / d, b = (size[axis] - o) / d;
+    inside.begin = std::max(inside.begin, std::min(a, b));
+    inside.end = std::min(inside.end, std::max(a, b));
+  }
+  return inside;
+}
+
+/// Largest power of two not above x, for finite x >= 1: its float without the mantissa.
+float power_of_two_below(float x) { return std::bit_cast<float>(std::bit_cast<uint32_t>(x) & 0x7f800000u); }
+
+/// Coarser levels than 1/16 of the box's longest side are not used: their texels stick out of the scene, or hold both
+/// sides of a room, so that they are no longer opaque.
+float coarsest_texel(const Medium& medium) {
+  const glm::ivec3& size = medium.texels.grid.size;
+  const float share = static_cast<float>(std::max({size.x, size.y, size.z})) / 16.0f;
+  return std::min(Medium::cell(medium.top()), power_of_two_below(std::max(share, 1.0f)));
+}
+
+/// How fine a cone samples, along its way; lengths in voxels.
+class Resolution {
+ public:
+  Resolution(float tan_half_angle, const glm::vec3& direction, const OwnPlane& own, float coarsest)
+      : widening_(2.0f * tan_half_angle), coarsest_(coarsest) {
+    // A filter reaches 1.5 texels along each axis, thus 1.5 |n|_1 texels towards the plane.
+    const float reach = 1.5f * (std::abs(own.normal.x) + std::abs(own.normal.y) + std::abs(own.normal.z));
+    if (reach == 0.0f) return;
+    clear_start_ = own.height / reach;
+    clear_slope_ = glm::dot(own.normal, direction) / reach;
+  }
+  /// Side of the texels at distance s: the cone's diameter, within what the pyramid holds and the own plane allows.
+  float texel(float s) const {
+    // Between two levels the coarser one must stay clear of the plane as well: the greatest is a whole level.
+    const float clear = power_of_two_below(std::max(clear_start_ + clear_slope_ * s, 1.0f));
+    return std::min(std::clamp(widening_ * s, 1.0f, coarsest_), clear);
+  }
+
+ private:
+  float widening_, coarsest_;
+  float clear_start_ = infinity, clear_slope_ = 0.0f;
+};
+
+}  // namespace
+
+ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3& direction, float tan_half_angle,
+                 const OwnPlane& own, const MarchOptions& options, float max_distance) {
+  const Grid& grid = medium.texels.grid;
+  const glm::vec3 start = grid.to_voxels(origin);
+  const Resolution resolution(tan_half_angle, direction, own, coarsest_texel(medium));
+  const DirectionalRead read(direction);
+
+  // Filters of texels at the box's border reach half a texel out of it, and border texels stick out of it by up to one.
+  Interval inside = clip(start, direction, glm::vec3(grid.size));
+  if (inside.begin < inside.end) inside.end += 1.5f * resolution.texel(inside.end);
+  inside.end = std::min(inside.end, max_distance / grid.voxel);
+
+  Float4 gathered{};  // premultiplied radiance
+  float transmittance = 1.0f, occlusion = 0.0f;
+  for (float s = inside.begin; s < inside.end;) {
+    // The middle of the step stands for it: halving the steps then changes little.
+    const float length = std::min(options.step * resolution.texel(s), inside.end - s);
+    const float middle = s + 0.5f * length;
+    if (s + length <= s) break;  // so close to the end that float32 cannot step
+    s += length;
+    const float level = std::log2(resolution.texel(middle));
+    const Float4 sample = quadrilinear(medium, start + middle * direction, level, read);
+    const float sigma = sample[3];
+    if (sigma == 0.0f) continue;
+
+    const float through = std::exp(-sigma * length);
+    const float absorbed = transmittance * (1.0f - through);
+    gathered += (absorbed / sigma) * sample;
+    occlusion += absorbed / (1.0f + options.falloff * middle);
+    transmittance *= through;
+    if (transmittance <= opaque_transmittance) {
+      gathered += (transmittance / sigma) * sample;
+      occlusion += transmittance / (1.0f + options.falloff * middle);
+      transmittance = 0.0f;
+      break;
+    }
+  }
+  ConeSample result;
+  result.radiance = glm::vec3(to_vec4(gathered));
+  result.opacity = 1.0f - transmittance;
+  result.occlusion = std::min(occlusion, 1.0f);
+  if (max_distance == infinity) result.radiance += transmittance * options.background;
+  return result;
+}
+
+float march_opacity(const Medium& medium, const glm::vec3& from, const glm::vec3& to, float tan_half_angle,
+                    float step) {
+  const float distance = glm::distance(from, to);
+  if (distance == 0.0f) return 0.0f;
+  MarchOptions options;
+  options.step = step;
+  return march(medium, from, (to - from) / distance, tan_half_angle, OwnPlane{}, options, distance).opacity;
+}
+
+}  // namespace voxref

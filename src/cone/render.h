@@ -31,7 +31,7 @@ struct RenderOptions {
 /// radiance. Layers of cli.md for `cone`. A pixel whose value is not finite is counted, never painted over.
 struct ConeImage {
   Image image;
-  uint64_t nonfinite = 0;    ///< pixels with a NaN or an infinity
+  uint64_t nonfinite = 0;       ///< pixels with a NaN or an infinity
   std::string first_nonfinite;  ///< "pixel (x, y)", empty when there is none
 };
 ConeImage render_cones(const Scene& scene, const Caster& caster, const Medium& medium, const View& view,
