@@ -43,7 +43,7 @@ int run(int argc, char* argv[]) {
   app.add_flag("--list", list, "Print the table of all scenes and stop");
   app.add_option("--subdivisions", parameters.subdivisions, "Spheres have 20 x 4^N triangles, N in [0, 8]");
   app.add_option("--segments", parameters.segments, "Around cone, cylinder and torus, in [3, 4096]");
-  app.add_option("--divisions", parameters.divisions, "Per side of each of the teapot's patches, in [1, 64]");
+  app.add_option("--divisions", parameters.divisions, "Per side of each of the teapot's patches, in [2, 64]");
   app.add_option("--thickness", parameters.thickness, "Of the thin wall in metres, in (0, 1]");
   app.add_option("--albedo", parameters.albedo, "Of the furnaces, in [0, 1)");
   app.add_option("--scale", parameters.scale, "Multiplies every length; radiance and irradiance stay");

@@ -6,14 +6,6 @@
 #include <utility>
 
 namespace voxref {
-namespace {
-
-/// Twice the triangle's area times its unit normal.
-glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  return glm::cross(b - a, c - a);
-}
-
-}  // namespace
 
 uint32_t add_vertex(Mesh& mesh, const glm::vec3& position, const glm::vec3& normal) {
   mesh.positions.push_back(position);
@@ -26,6 +18,10 @@ void append(Mesh& mesh, const Mesh& part) {
   mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
   mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
   for (const glm::uvec3& t : part.triangles) mesh.triangles.push_back(t + offset);
+}
+
+glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  return glm::cross(b - a, c - a);
 }
 
 glm::vec3 face_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {

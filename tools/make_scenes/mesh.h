@@ -17,6 +17,8 @@ uint32_t add_vertex(Mesh& mesh, const glm::vec3& position, const glm::vec3& norm
 /// Appends `part` to `mesh`.
 void append(Mesh& mesh, const Mesh& part);
 
+/// Twice the triangle's area times its unit normal.
+glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 /// Unit, on the side from which a, b, c run counter-clockwise.
 glm::vec3 face_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 /// Sum of the triangles' areas, in double.

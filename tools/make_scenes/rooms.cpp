@@ -37,8 +37,7 @@ Scene thin_wall(float thickness) {
 Scene light_box() {
   Scene scene;
   const uint32_t white = add_material(scene, lambertian("white", glm::vec3(0.8f)));
-  // Power 8: flat walls, and edges as round as a tenth of the room.
-  add_object(scene, "room", flipped(rounded_box({1.0f, 0.75f, 1.0f}, 8.0f, 5)), white);
+  add_object(scene, "room", flipped(rounded_box({1.0f, 0.75f, 1.0f}, 4.0f, 5)), white);
   scene.lights.push_back(point_light("low_lamp", {0.25f, -0.45f, -0.2f}, glm::vec3(1.0f)));
   scene.cameras.push_back(camera("inside", {-0.5f, 0.1f, 0.8f}, {0.2f, -0.15f, -0.6f}, 65.0f, 4.0f / 3.0f));
   return scene;

@@ -1,6 +1,7 @@
 #include "make_scenes/shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
@@ -68,6 +69,36 @@ DirectionMesh octahedron_directions() {
           {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
 }
 
+/// Turns edges of a closed surface, star-shaped about the origin and with all vertices on a convex body, until none is
+/// reflex: then it is their convex hull. Each turn adds a tetrahedron, so it ends; flat to `least` is convex.
+void make_convex(Mesh& mesh) {
+  constexpr double least = 1e-12;  // of six times a tetrahedron's volume, against turning flat quadrilaterals for ever
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> opposite;  // directed edge to its triangle's third vertex
+  std::vector<std::pair<uint32_t, uint32_t>> suspects;
+  for (const glm::uvec3& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      opposite[{t[k], t[(k + 1) % 3]}] = t[(k + 2) % 3];
+      suspects.emplace_back(t[k], t[(k + 1) % 3]);
+    }
+  const auto position = [&](uint32_t i) { return glm::dvec3(mesh.positions[i]); };
+  while (!suspects.empty()) {
+    const auto [a, b] = suspects.back();
+    suspects.pop_back();
+    const auto edge = opposite.find({a, b});
+    if (edge == opposite.end()) continue;  // turned meanwhile
+    const uint32_t c = edge->second, d = opposite.at({b, a});
+    if (glm::dot(area_vector(position(a), position(b), position(c)), position(d) - position(a)) <= least) continue;
+    opposite.erase({a, b});
+    opposite.erase({b, a});
+    for (const auto& [from, to, third] : {std::array{a, d, c}, {d, c, a}, {c, a, d}, {d, b, c}, {b, c, d}, {c, d, b}})
+      opposite[{from, to}] = third;
+    suspects.insert(suspects.end(), {{a, d}, {d, b}, {b, c}, {c, a}});
+  }
+  mesh.triangles.clear();
+  for (const auto& [edge, c] : opposite)
+    if (edge.first < edge.second && edge.first < c) mesh.triangles.emplace_back(edge.first, edge.second, c);
+}
+
 /// Unit vector at the angle of `step` of `steps` around +Y, from +X towards -Z: counter-clockwise seen from above.
 /// Steps that are a full turn apart give the same bits.
 glm::dvec3 around_axis(double step, int steps) {
@@ -131,6 +162,7 @@ Mesh icosphere(int subdivisions) {
 }
 
 Mesh rounded_box(const glm::vec3& half_extent, float power, int subdivisions) {
+  if (!(power >= 2.0f && power <= 5.0f)) throw Error("power", "must be in [2, 5]");
   const DirectionMesh sphere = subdivided(octahedron_directions(), subdivisions);
   const double p = power;
   Mesh mesh;
@@ -143,6 +175,7 @@ Mesh rounded_box(const glm::vec3& half_extent, float power, int subdivisions) {
     add_vertex(mesh, unit * glm::dvec3(half_extent), glm::normalize(gradient));
   }
   mesh.triangles = sphere.triangles;
+  make_convex(mesh);
   return mesh;
 }
 

@@ -17,9 +17,9 @@ Mesh icosahedron();
 /// The icosahedron with every edge halved `subdivisions` times and its vertices pushed out to distance 1: 20 x 4^n
 /// triangles, smooth normals. @throws Error unless subdivisions is in [0, 8]
 Mesh icosphere(int subdivisions);
-/// A closed convex interior between a sphere (power 2) and a box: |x|^p + |y|^p + |z|^p = 1, scaled to `half_extent`.
-/// An octahedron with every edge halved `subdivisions` times, projected: 8 x 4^n triangles; smooth normals, from the
-/// gradient.
+/// A convex body between a sphere (power 2) and a box: |x|^p + |y|^p + |z|^p = 1, scaled to `half_extent`. The vertices
+/// of an octahedron whose edges are halved `subdivisions` times, projected to it, and their convex hull: 8 x 4^n
+/// triangles that hide nothing from one another; smooth normals, from the gradient.
 Mesh rounded_box(const glm::vec3& half_extent, float power, int subdivisions);
 
 /// Bodies of revolution about +Y, smooth around and sharp at the rims; `segments` (at least 3) around the axis.

@@ -212,16 +212,29 @@ Mesh tessellated(const Patch& patch, const glm::dvec3& mirror, int divisions) {
   return mesh;
 }
 
+/// Poles leave vertices that no triangle needs any more.
+Mesh without_unused_vertices(const Mesh& mesh) {
+  constexpr uint32_t unused = ~0u;
+  std::vector<uint32_t> renamed(mesh.positions.size(), unused);
+  for (const glm::uvec3& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) renamed[t[k]] = 0;
+  Mesh result;
+  for (size_t i = 0; i < renamed.size(); ++i)
+    if (renamed[i] != unused) renamed[i] = add_vertex(result, mesh.positions[i], mesh.normals[i]);
+  for (const glm::uvec3& t : mesh.triangles) result.triangles.emplace_back(renamed[t.x], renamed[t.y], renamed[t.z]);
+  return result;
+}
+
 }  // namespace
 
 Mesh teapot(int divisions) {
-  if (divisions < 1 || divisions > 64) throw Error("teapot", "divisions must be in [1, 64]");
+  if (divisions < 2 || divisions > 64) throw Error("divisions", "must be in [2, 64]");
   Mesh mesh;
   for (const Patch& patch : patches)
     for (const double x : {1.0, -1.0})
       for (const double y : {1.0, -1.0})
         if (x > 0.0 || patch.four_fold) append(mesh, tessellated(patch, {x, y, 1.0}, divisions));
-  return mesh;
+  return without_unused_vertices(mesh);
 }
 
 }  // namespace voxref

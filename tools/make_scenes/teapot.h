@@ -9,7 +9,7 @@ namespace voxref {
 /// that vanish at the lid's and the bottom's poles: 64 n^2 - 8 n. Patches meet without gaps and their normals, the
 /// surface's own, agree along their seams. Open where the original is: the ends of handle and spout, and the slit under
 /// the lid.
-/// @throws Error unless divisions is in [1, 64]
+/// @throws Error unless divisions is in [2, 64]: uncut, the two halves of handle and spout would coincide
 Mesh teapot(int divisions);
 
 }  // namespace voxref
