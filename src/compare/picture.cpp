@@ -91,13 +91,13 @@ void copy_into(Picture& target, const Picture& source, int left) {
     }
 }
 
-/// The 99th percentile of |value|, rounded up to 1, 2 or 5 times a power of ten; 1 where it is zero.
+/// The 95th percentile of |value|, rounded up to 1, 2 or 5 times a power of ten; 1 where it is zero.
 float rounded_percentile(const std::vector<float>& values) {
   std::vector<float> finite;
   for (const float value : values)
     if (std::isfinite(value)) finite.push_back(std::abs(value));
   if (finite.empty()) return 1.0f;
-  const auto rank = finite.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(finite.size() - 1));
+  const auto rank = finite.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(finite.size() - 1));
   std::nth_element(finite.begin(), rank, finite.end());
   if (*rank < std::numeric_limits<float>::min()) return 1.0f;
   const double decade = std::pow(10.0, std::floor(std::log10(double{*rank})));

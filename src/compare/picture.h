@@ -37,12 +37,12 @@ struct ValueMap {
   float low = 0, high = 1;  ///< the ends of the colour bar
 };
 
-/// Luminance of cone - path, radiance: negative (blue) where the cone tracer is darker. The bar is symmetric: the 99th
+/// Luminance of cone - path, radiance: negative (blue) where the cone tracer is darker. The bar is symmetric: the 95th
 /// percentile of the absolute value, rounded up to 1, 2 or 5 times a power of ten; 1 where the images are equal.
 ValueMap signed_difference(const Image& cone, const Image& path);
 /// |cone - path| / max(path, floor) of the luminances, floor = 1 % of the path-traced mean, over [0,1].
 ValueMap relative_error(const Image& cone, const Image& path);
-/// Standard error of the path-traced luminance (stderr.Y), radiance, over [0, 99th percentile, rounded up as above].
+/// Standard error of the path-traced luminance (stderr.Y), radiance, over [0, 95th percentile, rounded up as above].
 ValueMap noise(const Image& path);
 
 /// The layer as displayed: x 2^exposure, clipped, sRGB.

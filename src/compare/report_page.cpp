@@ -154,9 +154,11 @@ std::string summary(const CheckReport& report) {
         metrics.nonfinite_cone, metrics.nonfinite_path, metrics.first_nonfinite);
   if (!std::isfinite(metrics.mean_ratio)) return "The path-traced image is black.";
   const double percent = 100.0 * (metrics.mean_ratio - 1.0);
-  const std::string light = metrics.indirect_only ? "indirect light" : "light";
-  std::string text = fmt::format("The cone tracer's {} is {:.1f} % {} than the path tracer's in the mean", light,
-                                 std::abs(percent), percent < 0.0 ? "darker" : "brighter");
+  std::string text = fmt::format("The cone tracer's {} is ", metrics.indirect_only ? "indirect light" : "light");
+  text += std::abs(percent) < 0.05
+              ? "as bright as"
+              : fmt::format("{:.1f} % {} than", std::abs(percent), percent < 0.0 ? "darker" : "brighter");
+  text += " the path tracer's in the mean";
   text += fmt::format(" and {:.1f} % off per pixel (RMS, noise taken out)", 100.0 * metrics.rel_error);
   if (report.budget) text += fmt::format("; the budget is {:g} %", 100.0 * *report.budget);
   return text + ".";

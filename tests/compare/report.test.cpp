@@ -1,8 +1,11 @@
 #include "compare/report.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "catch.h"
@@ -134,30 +137,63 @@ TEST_CASE("A check leaves its images, pictures, result and page in the folder", 
   CHECK(result["metrics"]["mean_ratio"] == Approx(1.0).epsilon(1e-6));  // the parts of the sum are floats
 }
 
-TEST_CASE("The page runs in a browser without script errors and shows the pixel's values", "[compare]") {
-  if (std::system("chromium --version >/dev/null 2>&1") != 0) VOXREF_SKIP("chromium is not installed");
+namespace {
+
+/// The DOM after a browser ran the page, with a further script at its end; none without chromium.
+std::optional<std::string> run_in_browser(const CheckReport& report, const std::string& script,
+                                          const std::string& fragment) {
+  if (std::system("chromium --version >/dev/null 2>&1") != 0) return std::nullopt;
   const TemporaryFolder folder;
-  // 0.78125 = 200/256 and 0.1953125 survive the page's 8-bit mantissas; odd sides and several PNG rows per exponent
-  // row.
-  const auto radiance = [](int x, int y) {
-    return x == 15 && y == 10 ? glm::vec3(0.78125f, 0.1953125f, 0.0f) : wavy(x, y);
-  };
-  Image cone = cone_image(31, 21, radiance), path = path_image(31, 21, wavy);
+  std::filesystem::create_directories(folder.path);
+  const std::filesystem::path page = folder.path / "report.html", dump = folder.path / "dom.html";
+  voxref::write_text(page, report_page(report) + "<script>" + script + "</script>");
+  const std::string command =
+      "chromium --headless --no-sandbox --disable-gpu --disable-background-networking --user-data-dir=" +
+      (folder.path / "profile").string() + " --virtual-time-budget=5000 --dump-dom 'file://" + page.string() + "#" +
+      fragment + "' >" + dump.string() + " 2>/dev/null";
+  REQUIRE(std::system(command.c_str()) == 0);
+  return voxref::read_file(dump);
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("The page runs in a browser and shows the values of the middle pixel", "[compare]") {
+  // 0.78125 = 200/256 and 0.1953125 survive the page's 8-bit mantissas. Odd sides: exponent rows are not full.
+  Image cone = cone_image(
+      31, 21, [](int x, int y) { return x == 15 && y == 10 ? glm::vec3(0.78125f, 0.1953125f, 0.0f) : wavy(x, y); });
+  const Image path = path_image(31, 21, wavy);
   cone.channel("R")[0] = std::numeric_limits<float>::quiet_NaN();
-  write_check(folder.path, report_of(cone, path));
-  const std::string browser =
-      "chromium --headless --no-sandbox --disable-gpu --disable-background-networking "
-      "--user-data-dir=" +
-      (folder.path / "profile").string();
-  const std::string dump = (folder.path / "dom.html").string();
-  REQUIRE(std::system((browser + " --virtual-time-budget=5000 --dump-dom file://" +
-                       (folder.path / "report.html").string() + "#difference >" + dump + " 2>/dev/null")
-                          .c_str()) == 0);
-  const std::string dom = voxref::read_file(dump);
-  CHECK(dom.find("data-state=\"ready\"") != std::string::npos);
-  CHECK(dom.find("pixel (15, 10)") != std::string::npos);  // the middle one, until the pointer moves
-  CHECK(dom.find("<tr id=\"readout-cone\"><th "
-                 "scope=\"row\">cone</th><td>0.781</td><td>0.195</td><td>0</td><td>0.306</td></tr>") !=
-        std::string::npos);
-  CHECK(dom.find("cone darker") != std::string::npos);
+  const std::optional<std::string> dom = run_in_browser(report_of(cone, path), "", "difference");
+  if (!dom) VOXREF_SKIP("chromium is not installed");
+  CHECK(contains(*dom, "data-state=\"ready\""));
+  CHECK(contains(*dom, "pixel (15, 10)"));
+  CHECK(contains(*dom,
+                 "<tr id=\"readout-cone\"><th scope=\"row\">cone</th><td>0.781</td><td>0.195</td><td>0</td>"
+                 "<td>0.306</td></tr>"));
+  CHECK(contains(*dom, "cone darker"));
+}
+
+TEST_CASE("Every key, the wheel and the pointer work on the page without a script error", "[compare]") {
+  const Image cone = cone_image(64, 48, wavy),
+              path = path_image(64, 48, [](int x, int y) { return 1.1f * wavy(x, y); });
+  // A script error would turn the state to "failed". The last keys leave: path (mode 4), half a stop up, layer 2.
+  const std::optional<std::string> dom = run_in_browser(report_of(cone, path), R"(
+    setTimeout(() => {
+      const press = (key, shiftKey = false) => document.dispatchEvent(new KeyboardEvent("keydown", { key, shiftKey }));
+      for (const key of "123456 [ ]eEdDrl+-0=") press(key);
+      for (const key of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) { press("1"); press(key); press(key, true); }
+      const box = document.getElementById("canvas").getBoundingClientRect();
+      const at = { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 };
+      document.getElementById("canvas").dispatchEvent(new WheelEvent("wheel", { deltaY: -800, ...at }));
+      for (const key of ["2", "0", "r", "e", "e", "4"]) press(key);
+      document.getElementById("canvas").dispatchEvent(new PointerEvent("pointermove", at));
+    }, 1000);)",
+                                                        "error");
+  if (!dom) VOXREF_SKIP("chromium is not installed");
+  CHECK(contains(*dom, "data-state=\"ready\""));
+  CHECK(contains(*dom, "data-mode=\"path\" aria-checked=\"true\""));
+  CHECK(contains(*dom, "pixel (32, 24)"));
+  CHECK(contains(*dom, "stops</output>"));
 }

@@ -133,7 +133,7 @@ function roundUp(value) {
   return decade * ([1, 2, 5].find((step) => value <= step * decade * (1 + 1e-6)) ?? 10);
 }
 
-/** The 99th percentile of the absolute difference, rounded up. */
+/** The 95th percentile of the absolute difference, rounded up. */
 function automaticRange() {
   const { cone, path } = layers[show.layer], values = [];
   for (let i = 0; i < width * height; ++i) {
@@ -141,7 +141,7 @@ function automaticRange() {
     if (Number.isFinite(value)) values.push(value);
   }
   values.sort((a, b) => a - b);
-  const percentile = values[Math.floor(0.99 * (values.length - 1))];
+  const percentile = values[Math.floor(0.95 * (values.length - 1))];
   return percentile > 0 ? roundUp(percentile) : 1;
 }
 
@@ -174,7 +174,7 @@ function drawPicture(name, clipLeft, clipRight) {
   context.beginPath();
   context.rect(clipLeft, 0, clipRight - clipLeft, canvas.height);
   context.clip();
-  context.imageSmoothingEnabled = show.zoom < 1;
+  context.imageSmoothingEnabled = show.zoom < 4 && !Number.isInteger(show.zoom);  // uneven pixels look like a grid
   context.drawImage(picture(name), show.panX, show.panY, width * show.zoom, height * show.zoom);
   context.restore();
 }
@@ -212,7 +212,7 @@ function drawMarker() {
   context.strokeRect(show.panX + show.pixel[0] * show.zoom, show.panY + show.pixel[1] * show.zoom, show.zoom, show.zoom);
 }
 
-const digits = (value) => Number.isFinite(value) ? String(Number(value.toPrecision(3))) : "not finite";
+const digits = (value) => Number.isFinite(value) ? String(Number(value.toPrecision(3))).replace("-", "−") : "not finite";
 
 function updateControls() {
   for (const button of element("modes").children)
