@@ -18,10 +18,11 @@ class BrickVolume {
 
   BrickVolume() = default;
   explicit BrickVolume(const glm::ivec3& size)
-      : size_(size), bricks_((size + side - 1) / side),
+      : size_(size),
+        bricks_((size + side - 1) / side),
         slots_(size_t(bricks_.x) * size_t(bricks_.y) * size_t(bricks_.z), absent) {}
 
-  const glm::ivec3& size() const { return size_; }        ///< texels per side
+  const glm::ivec3& size() const { return size_; }          ///< texels per side
   const glm::ivec3& brick_grid() const { return bricks_; }  ///< bricks per side
   size_t brick_count() const { return texels_.size() / texels_per_brick; }
   size_t bytes() const { return texels_.capacity() * sizeof(Texel) + slots_.capacity() * sizeof(uint32_t); }
@@ -61,7 +62,8 @@ class BrickVolume {
   std::span<Texel> texels() { return texels_; }
 
   static size_t offset(const glm::ivec3& v) {
-    return size_t(v.x & (side - 1)) + size_t(side) * (size_t(v.y & (side - 1)) + size_t(side) * size_t(v.z & (side - 1)));
+    return size_t(v.x & (side - 1)) +
+           size_t(side) * (size_t(v.y & (side - 1)) + size_t(side) * size_t(v.z & (side - 1)));
   }
 
  private:

@@ -10,7 +10,6 @@ namespace voxref {
 
 namespace {
 
-constexpr int max_samples = 64;
 constexpr double golden_fraction = 0.6180339887498949;  // (sqrt(5) - 1) / 2: its multiples fill [0,1) most evenly
 
 /// The share of cosine-weighted light that leaves again, whatever the directions: what a voxel, which forgets
@@ -77,7 +76,7 @@ MaterialFilter::MaterialFilter(const Scene& scene) : scene_(scene), entries_(sce
   }
 }
 
-int MaterialFilter::sample_count(const Entry& entry, uint32_t triangle, const ClipPolygon& piece) const {
+int MaterialFilter::sample_count(const Entry& entry, uint32_t triangle, const ClipPolygon& piece, double area) const {
   const glm::uvec3& corners = scene_.triangles[triangle];
   double texels = 0.0;
   for (int set = 0; set < 2; ++set) {
@@ -86,19 +85,20 @@ int MaterialFilter::sample_count(const Entry& entry, uint32_t triangle, const Cl
     const glm::dvec2 a(uv[corners.x]), b(uv[corners.y]), c(uv[corners.z]);
     texels = std::max(texels, std::abs(cross(b - a, c - a)) * barycentric_area(piece) * entry.texels[set]);
   }
-  return int(std::clamp(std::ceil(texels), 1.0, double(max_samples)));
+  static const double S = getenv("S") ? atof(getenv("S")) : 32;
+  return int(std::max(1.0, std::ceil(std::min(texels, S * area))));
 }
 
-FilteredMaterial MaterialFilter::operator()(uint32_t triangle, const ClipPolygon& piece) const {
+FilteredMaterial MaterialFilter::operator()(uint32_t triangle, const ClipPolygon& piece, double area) const {
   const Entry& entry = entries_[scene_.triangle_materials[triangle]];
   if (!entry.varies) return entry.constant;
 
-  const int count = sample_count(entry, triangle, piece);
-  const double area = barycentric_area(piece);
+  const int count = sample_count(entry, triangle, piece, area);
+  const double within = barycentric_area(piece);
   FilteredMaterial mean{0.0};
   for (int i = 0; i < count; ++i) {
     const FilteredMaterial sample =
-        at_point(material_point(scene_, triangle, glm::vec2(spread(piece, area, i, count))));
+        at_point(material_point(scene_, triangle, glm::vec2(spread(piece, within, i, count))));
     mean.coverage += sample.coverage;
     mean.albedo += sample.coverage * sample.albedo;
     mean.emission += sample.coverage * sample.emission;

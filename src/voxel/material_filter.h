@@ -15,13 +15,16 @@ struct FilteredMaterial {
 };
 
 /// Filters materials to the footprint of a piece. A material without textures on a scene without vertex colours is
-/// evaluated once; the others at points spread evenly over the piece, one per texel of the finest texture, 64 at most:
-/// the mean of a voxel's many pieces is then below a grey level of 8 bits from the exact one for photographic textures.
+/// evaluated once; the others at points spread evenly over the piece, one per texel of the finest texture, but no more
+/// than samples_per_voxel for each voxel face's worth of area.
 class MaterialFilter {
  public:
   /// Keeps a reference to the scene.
   explicit MaterialFilter(const Scene& scene);
-  FilteredMaterial operator()(uint32_t triangle, const ClipPolygon& piece) const;
+  /// @param area of the piece, in voxel faces
+  FilteredMaterial operator()(uint32_t triangle, const ClipPolygon& piece, double area) const;
+
+  static constexpr int samples_per_voxel = 32;
 
  private:
   struct Entry {
@@ -29,7 +32,7 @@ class MaterialFilter {
     FilteredMaterial constant;      ///< where it does not
     double texels[2] = {0.0, 0.0};  ///< per unit area of each texture coordinate set
   };
-  int sample_count(const Entry& entry, uint32_t triangle, const ClipPolygon& piece) const;
+  int sample_count(const Entry& entry, uint32_t triangle, const ClipPolygon& piece, double area) const;
 
   const Scene& scene_;
   std::vector<Entry> entries_;  ///< one per material

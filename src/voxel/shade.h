@@ -20,9 +20,10 @@ struct ShadeOptions {
 };
 
 /// Outgoing radiance of each occupied voxel, W/(sr m^2), in SurfaceGrid's order: emission + albedo/pi x irradiance x
-/// visibility of the punctual lights, at the voxel's centroid. Both sides of a surface scatter, so |n.l| counts; where
-/// opposite normals cancel (mean normal shorter than two_sided_length) the voxel is lit as a sheet that faces the light
-/// with the mean |cos| of a random orientation, 1/2. Spec section 3 (radiometric).
+/// visibility of the punctual lights, at the voxel's centroid, with the unit mean normal. Both sides of a surface
+/// scatter, so |n.l| counts; where opposite normals cancel (mean normal shorter than two_sided_length) the voxel is lit
+/// as a sheet that faces the light with the mean |cos| of a random orientation, 1/2. Shadow rays start half a voxel off
+/// the surface. Spec section 3 (radiometric).
 /// @param caster may be null unless shadow is `rays`
 std::vector<glm::vec3> shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces,
                              const ShadeOptions& options, const Progress& progress = {});

@@ -118,10 +118,10 @@ class BrickVoxelizer {
   }
 
   void add_piece(uint32_t triangle, const glm::dvec3& front, size_t voxel, const ClipPolygon& piece, double share) {
-    const double clipped_area = 0.5 * share * glm::dot(twice_vector_area(piece), front);
-    if (!(clipped_area > 0.0)) return;
-    const FilteredMaterial material = filter_(triangle, piece);
-    const double area = clipped_area * material.coverage;
+    const double whole_area = 0.5 * glm::dot(twice_vector_area(piece), front);
+    if (!(whole_area > 0.0)) return;
+    const FilteredMaterial material = filter_(triangle, piece, whole_area);
+    const double area = share * whole_area * material.coverage;
     if (!(area > 0.0)) return;
     const ClipVertex centroid = centroid_of(piece, front);
     Sums& sums = sums_[voxel];
