@@ -7,6 +7,31 @@
 
 namespace voxref {
 
+/// A set of bricks of a volume, by their brick coordinates.
+class BrickSet {
+ public:
+  /// @param size bricks per side
+  explicit BrickSet(const glm::ivec3& size) : size_(size), members_(size_t(size.x) * size_t(size.y) * size_t(size.z)) {}
+
+  void add(const glm::ivec3& b) {
+    members_[size_t(b.x) + size_t(size_.x) * (size_t(b.y) + size_t(size_.y) * size_t(b.z))] = true;
+  }
+  /// Its members, sorted z, y, x.
+  std::vector<glm::ivec3> sorted() const {
+    std::vector<glm::ivec3> bricks;
+    size_t index = 0;
+    for (int z = 0; z < size_.z; ++z)
+      for (int y = 0; y < size_.y; ++y)
+        for (int x = 0; x < size_.x; ++x)
+          if (members_[index++]) bricks.emplace_back(x, y, z);
+    return bricks;
+  }
+
+ private:
+  glm::ivec3 size_;
+  std::vector<bool> members_;
+};
+
 /// A volume of texels that is stored in bricks of 8^3; a brick without content takes no memory but its table entry, and
 /// reads as Texel{}. Inside a brick texels lie x fastest, then y, then z.
 template <class Texel>

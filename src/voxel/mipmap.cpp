@@ -68,23 +68,16 @@ DirectionalTexel filter_isotropic(const Block<Texel>& block) {
   return result;
 }
 
-/// Bricks of the next level that have a brick below them, z slowest.
+/// Bricks of the next level that have a brick below them.
 template <class Texel>
 std::vector<glm::ivec3> parents(const BrickVolume<Texel>& fine, const BrickVolume<DirectionalTexel>& coarse) {
-  const glm::ivec3 size = coarse.brick_grid(), below = fine.brick_grid();
-  std::vector<uint8_t> wanted(size_t(size.x) * size_t(size.y) * size_t(size.z));
-  const auto index = [&](int x, int y, int z) { return size_t(x) + size_t(size.x) * (y + size_t(size.y) * z); };
+  BrickSet bricks(coarse.brick_grid());
+  const glm::ivec3 below = fine.brick_grid();
   for (int z = 0; z < below.z; ++z)
     for (int y = 0; y < below.y; ++y)
       for (int x = 0; x < below.x; ++x)
-        if (fine.slot({x, y, z}) != fine.absent) wanted[index(x / 2, y / 2, z / 2)] = 1;
-
-  std::vector<glm::ivec3> bricks;
-  for (int z = 0; z < size.z; ++z)
-    for (int y = 0; y < size.y; ++y)
-      for (int x = 0; x < size.x; ++x)
-        if (wanted[index(x, y, z)]) bricks.emplace_back(x, y, z);
-  return bricks;
+        if (fine.slot({x, y, z}) != fine.absent) bricks.add({x / 2, y / 2, z / 2});
+  return bricks.sorted();
 }
 
 /// Fills the eighth of a coarse brick that one fine brick lies under: `octant` in {0,1}^3.

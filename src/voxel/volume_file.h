@@ -1,56 +1,48 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "voxel/mipmap.h"
+#include "voxel/volume_index.h"
+#include "voxel/volume_writer.h"
 #include "voxel/voxelize.h"
 
 namespace voxref {
 
-/// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), float32, dense (cli.md,
-/// "Volumes"). The radiometric profile writes albedo (a = opacity), normal, centroid (world), emission where the scene
-/// has it, radiance, radiance_bounce, aniso_<face>_<level>, aniso_bounce_<face>_<level>. Radiance and aniso volumes are
-/// premultiplied. Files appear whole or not at all; volumes.json is written last.
-class VolumeFolderWriter {
- public:
-  VolumeFolderWriter(std::filesystem::path folder, const Grid& grid);
-  void write_surfaces(const SurfaceGrid& surfaces);
-  /// @param bounced names them radiance_bounce and aniso_bounce_* instead of radiance and aniso_*
-  void write_radiance(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance, bool bounced);
-  void write_base(const BrickVolume<glm::vec4>& base, bool bounced);
-  void write_levels(const Pyramid& pyramid, bool bounced);
-  /// Writes volumes.json. Nothing that was written counts before.
-  void finish();
-
- private:
-  struct Entry;
-  std::filesystem::path folder_;
-  Grid grid_;
-  std::vector<Entry> entries_;
-};
-
-/// Reads such a folder, whoever wrote it. Every read checks shape, type and finiteness.
-/// @throws Error with the file and what is wrong
+/// Reads a folder of volumes (see VolumeFolderWriter), whoever wrote it, float32 or uint8 (read as value / 255). Every
+/// read checks shape, type and finiteness. @throws Error with the file and what is wrong
 class VolumeFolder {
  public:
   explicit VolumeFolder(std::filesystem::path folder);
-  const Grid& grid() const { return grid_; }
-  bool has(const std::string& volume) const;
-  /// Voxels whose albedo's alpha is above zero. Without a centroid volume the voxel centres stand in.
+  const Grid& grid() const { return index_.grid; }
+  const std::vector<VolumeEntry>& entries() const { return index_.volumes; }
+  bool has(const std::string& volume) const { return index_.find(volume) != nullptr; }
+  /// Voxels whose albedo's alpha is above zero; an alpha that counts fragments stands for opacity 1. Without a centroid
+  /// volume the voxel centres stand in, and an emission volume without light is left out.
   SurfaceGrid surfaces() const;
   /// radiance or radiance_bounce at the surfaces' voxels, not premultiplied.
   std::vector<glm::vec3> radiance(const SurfaceGrid& surfaces, bool bounced) const;
+  /// radiance or radiance_bounce, premultiplied, whichever way it is stored.
   BrickVolume<glm::vec4> base(bool bounced) const;
   /// Base and all levels; the levels as they are in the folder, not recomputed.
   Pyramid pyramid(bool bounced) const;
 
  private:
+  /// Opens a volume and holds it against its entry and the size that its place in the pipeline asks for.
+  NpyReader open(const VolumeEntry& entry, const glm::ivec3& size, size_t least_channels) const;
+  BrickVolume<DirectionalTexel> level(size_t level, const glm::ivec3& size, bool bounced) const;
+  const VolumeEntry& entry(const std::string& name) const;
+  std::string file(const VolumeEntry& entry) const;
+  /// Calls get(i, texel) with the texel of each of the surfaces' voxels.
+  void read_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces, size_t least_channels,
+                   const std::function<void(size_t i, std::span<const float> texel)>& get) const;
+
   std::filesystem::path folder_;
-  Grid grid_;
+  VolumeIndex index_;
 };
 
 }  // namespace voxref

@@ -200,19 +200,9 @@ size_t SurfaceGrid::bytes() const {
 }
 
 std::vector<glm::ivec3> occupied_bricks(const SurfaceGrid& surfaces) {
-  const glm::ivec3 size = BrickVolume<uint8_t>(surfaces.grid.size).brick_grid();
-  std::vector<uint8_t> occupied(size_t(size.x) * size_t(size.y) * size_t(size.z));
-  for (const glm::ivec3& v : surfaces.voxels) {
-    const glm::ivec3 b = v / Bricks::side;
-    occupied[size_t(b.x) + size_t(size.x) * (b.y + size_t(size.y) * b.z)] = 1;
-  }
-  std::vector<glm::ivec3> bricks;
-  size_t index = 0;
-  for (int z = 0; z < size.z; ++z)
-    for (int y = 0; y < size.y; ++y)
-      for (int x = 0; x < size.x; ++x)
-        if (occupied[index++]) bricks.emplace_back(x, y, z);
-  return bricks;
+  BrickSet bricks((surfaces.grid.size + Bricks::side - 1) / Bricks::side);
+  for (const glm::ivec3& voxel : surfaces.voxels) bricks.add(voxel / Bricks::side);
+  return bricks.sorted();
 }
 
 SurfaceGrid voxelize(const Scene& scene, const Grid& grid, const VoxelizeOptions& options, const Progress& progress) {

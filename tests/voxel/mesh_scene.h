@@ -1,6 +1,7 @@
 #pragma once
 // Meshes as scenes, for the tests of this folder.
 #include "make_scenes/assemble.h"
+#include "make_scenes/shapes.h"
 #include "voxel/grid.h"
 
 /// A scene of one mesh with one material.

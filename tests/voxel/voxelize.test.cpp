@@ -7,7 +7,6 @@
 #include <random>
 
 #include "catch.h"
-#include "make_scenes/shapes.h"
 #include "parallel.h"
 #include "voxel/mesh_scene.h"
 

@@ -1,0 +1,48 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "voxel/grid.h"
+#include "voxel/npy.h"
+
+namespace voxref {
+
+/// One volume of a folder, as its volumes.json describes it.
+struct VolumeEntry {
+  std::string name;               ///< the file is name.npy
+  std::array<size_t, 4> shape{};  ///< Z, Y, X, C
+  NpyType type = NpyType::float32;
+  std::string stage;           ///< that made it: voxelize, shade, bounce, mipmap, "mipmap after bounce"
+  std::string face;            ///< one of face_names; empty: none
+  int level = -1;              ///< mip level, 0 at half the base resolution; -1: none
+  bool premultiplied = false;  ///< rgb is already multiplied by alpha
+  std::string alpha;           ///< what the fourth channel means; empty: opacity, or there is none
+  std::string encoding;        ///< of values that are not stored plainly; empty: plain
+};
+
+/// A folder of volumes: cli.md, "Volumes".
+struct VolumeIndex {
+  Grid grid;
+  std::string format = "float32";  ///< or unorm8: how the renderer that made the volumes holds them
+  std::vector<VolumeEntry> volumes;
+
+  const VolumeEntry* find(const std::string& name) const;  ///< null when there is none
+};
+
+/// radiance, or radiance_bounce after bounces.
+std::string radiance_name(bool bounced);
+/// aniso_<face>_<level> or aniso_bounce_<face>_<level>. @param face index into face_names
+std::string aniso_name(size_t face, size_t level, bool bounced);
+
+std::filesystem::path index_file(const std::filesystem::path& folder);
+
+/// Writes folder/volumes.json. @throws Error with the path
+void write_volume_index(const std::filesystem::path& folder, const VolumeIndex& index);
+
+/// Reads folder/volumes.json, whoever wrote it. Keys that it does not know are ignored.
+/// @throws Error `FILE: PLACE: what is wrong`
+VolumeIndex read_volume_index(const std::filesystem::path& folder);
+
+}  // namespace voxref

@@ -1,0 +1,113 @@
+#include "voxel/volume_writer.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "error.h"
+
+namespace voxref {
+
+namespace {
+
+void store(const glm::vec3& v, float* channels) { std::copy_n(&v.x, 3, channels); }
+void store(const glm::vec4& v, float* channels) { std::copy_n(&v.x, 4, channels); }
+
+/// Slice z of a brick volume. @param value turns a texel into RGBA
+template <class Texel, class Value>
+void fill_slice(const BrickVolume<Texel>& volume, int z, std::span<float> slice, Value&& value) {
+  float* channels = slice.data();
+  for (int y = 0; y < volume.size().y; ++y)
+    for (int x = 0; x < volume.size().x; ++x, channels += 4) store(value(volume({x, y, z})), channels);
+}
+
+}  // namespace
+
+VolumeFolderWriter::VolumeFolderWriter(std::filesystem::path folder, const Grid& grid) : folder_(std::move(folder)) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) throw Error(folder_.string(), "cannot be made: " + error.message());
+  index_.grid = grid;
+}
+
+VolumeEntry VolumeFolderWriter::entry(const std::string& name, const glm::ivec3& size, size_t channels,
+                                      const std::string& stage) const {
+  VolumeEntry entry;
+  entry.name = name;
+  entry.shape = {size_t(size.z), size_t(size.y), size_t(size.x), channels};
+  entry.stage = stage;
+  if (channels == 4) entry.alpha = "opacity";
+  return entry;
+}
+
+void VolumeFolderWriter::write(const VolumeEntry& entry,
+                               const std::function<void(size_t z, std::span<float> slice)>& fill) {
+  if (index_.volumes.empty()) {
+    std::error_code error;
+    std::filesystem::remove(index_file(folder_), error);
+    if (error) throw Error(index_file(folder_).string(), "cannot be replaced: " + error.message());
+  }
+  write_npy(folder_ / (entry.name + ".npy"), entry.shape, fill);
+  index_.volumes.push_back(entry);
+}
+
+void VolumeFolderWriter::write_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces,
+                                      const std::function<void(size_t i, float* channels)>& put) {
+  assert(surfaces.grid.size == index_.grid.size);
+  size_t i = 0;  // voxels are sorted as the file is
+  write(entry, [&](size_t z, std::span<float> slice) {
+    for (; i < surfaces.size() && size_t(surfaces.voxels[i].z) == z; ++i) {
+      const glm::ivec3& v = surfaces.voxels[i];
+      put(i, slice.data() + entry.shape[3] * (size_t(v.x) + entry.shape[2] * size_t(v.y)));
+    }
+  });
+}
+
+void VolumeFolderWriter::write_surfaces(const SurfaceGrid& surfaces) {
+  const glm::ivec3& size = index_.grid.size;
+  write_sparse(entry("albedo", size, 4, "voxelize"), surfaces,
+               [&](size_t i, float* channels) { store(surfaces.albedo[i], channels); });
+  const auto write_vectors = [&](const std::string& name, const std::vector<glm::vec3>& values) {
+    write_sparse(entry(name, size, 3, "voxelize"), surfaces,
+                 [&](size_t i, float* channels) { store(values[i], channels); });
+  };
+  write_vectors("normal", surfaces.normal);
+  write_vectors("centroid", surfaces.centroid);
+  if (!surfaces.emission.empty()) write_vectors("emission", surfaces.emission);
+}
+
+void VolumeFolderWriter::write_radiance(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance,
+                                        bool bounced) {
+  VolumeEntry volume = entry(radiance_name(bounced), index_.grid.size, 4, bounced ? "bounce" : "shade");
+  volume.premultiplied = true;
+  write_sparse(volume, surfaces, [&](size_t i, float* channels) {
+    const float opacity = surfaces.albedo[i].a;
+    store(glm::vec4(opacity * radiance[i], opacity), channels);
+  });
+}
+
+void VolumeFolderWriter::write_base(const BrickVolume<glm::vec4>& base, bool bounced) {
+  VolumeEntry volume = entry(radiance_name(bounced), base.size(), 4, bounced ? "bounce" : "shade");
+  volume.premultiplied = true;
+  write(volume, [&](size_t z, std::span<float> slice) {
+    fill_slice(base, int(z), slice, [](const glm::vec4& texel) { return texel; });
+  });
+}
+
+void VolumeFolderWriter::write_levels(const Pyramid& pyramid, bool bounced) {
+  for (size_t face = 0; face < face_names.size(); ++face)
+    for (size_t level = 0; level < pyramid.levels.size(); ++level) {
+      const BrickVolume<DirectionalTexel>& texels = pyramid.levels[level];
+      VolumeEntry volume =
+          entry(aniso_name(face, level, bounced), texels.size(), 4, bounced ? "mipmap after bounce" : "mipmap");
+      volume.face = face_names[face];
+      volume.level = int(level);
+      volume.premultiplied = true;
+      write(volume, [&](size_t z, std::span<float> slice) {
+        fill_slice(texels, int(z), slice, [&](const DirectionalTexel& texel) { return texel[face]; });
+      });
+    }
+}
+
+void VolumeFolderWriter::finish() { write_volume_index(folder_, index_); }
+
+}  // namespace voxref

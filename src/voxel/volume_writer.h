@@ -1,0 +1,44 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+
+#include "voxel/mipmap.h"
+#include "voxel/volume_index.h"
+#include "voxel/voxelize.h"
+
+namespace voxref {
+
+/// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), float32, dense (cli.md,
+/// "Volumes"). The radiometric profile writes albedo (a = opacity), normal, centroid (world), emission where the scene
+/// has it, radiance, radiance_bounce, aniso_<face>_<level>, aniso_bounce_<face>_<level>. Radiance and aniso volumes are
+/// premultiplied. Files appear whole or not at all; volumes.json goes away with the first volume that is written and
+/// comes back last, so that it never describes a mixture. Volumes pass through memory a slice at a time.
+class VolumeFolderWriter {
+ public:
+  /// Makes the folder, and those above it, where they are missing. @throws Error with the path
+  VolumeFolderWriter(std::filesystem::path folder, const Grid& grid);
+  void write_surfaces(const SurfaceGrid& surfaces);
+  /// @param radiance one per voxel of `surfaces`, not premultiplied
+  /// @param bounced names it radiance_bounce instead of radiance; so below
+  void write_radiance(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance, bool bounced);
+  void write_base(const BrickVolume<glm::vec4>& base, bool bounced);
+  void write_levels(const Pyramid& pyramid, bool bounced);
+  /// Writes volumes.json. Nothing that was written counts before.
+  void finish();
+
+ private:
+  /// @param fill as in write_npy
+  void write(const VolumeEntry& entry, const std::function<void(size_t z, std::span<float> slice)>& fill);
+  /// A volume of one value per voxel of `surfaces` and zero elsewhere. @param put writes voxel i's channels
+  void write_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces,
+                    const std::function<void(size_t i, float* channels)>& put);
+  VolumeEntry entry(const std::string& name, const glm::ivec3& size, size_t channels, const std::string& stage) const;
+
+  std::filesystem::path folder_;
+  VolumeIndex index_;
+};
+
+}  // namespace voxref

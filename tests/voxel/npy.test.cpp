@@ -1,0 +1,146 @@
+#include "voxel/npy.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "catch.h"
+#include "error.h"
+#include "file.h"
+#include "temporary_folder.h"
+
+using namespace voxref;
+
+namespace {
+
+const std::string float_dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }";
+
+/// A file of format version 1 with the given dictionary and values.
+std::string array_file(const std::string& dictionary, const std::string& values) {
+  std::string file("\x93NUMPY\x01\x00", 8);
+  file += {char(dictionary.size() & 0xff), char(dictionary.size() >> 8)};
+  return file + dictionary + values;
+}
+
+/// What the message says when `content` is read, or "read" when it can be.
+std::string complaint(const std::string& content) {
+  const TemporaryFolder folder;
+  write_text(folder.path / "a.npy", content);
+  try {
+    NpyReader reader(folder.path / "a.npy");
+    std::vector<float> slice(reader.slice_size());
+    for (size_t i = 0; i < reader.shape()[0]; ++i) reader.read_slice(i, slice);
+    return "read";
+  } catch (const Error& error) {
+    const std::string what = error.what(), file = (folder.path / "a.npy").string();
+    CHECK(what.starts_with(file + ": "));
+    CHECK(what.find('\n') == what.npos);
+    return what.substr(file.size() + 2);
+  }
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+}  // namespace
+
+TEST_CASE("an array comes back bit by bit, denormals, negative zero and extremes included", "[npy]") {
+  const TemporaryFolder folder;
+  const std::vector<size_t> shape = {3, 2, 2, 1};
+  std::vector<float> values = {0.0f,
+                               -0.0f,
+                               1e-45f,
+                               -3.4e38f,
+                               0.1f,
+                               1.0f / 3.0f,
+                               std::numeric_limits<float>::max(),
+                               std::numeric_limits<float>::min(),
+                               5,
+                               6,
+                               7,
+                               8};
+  write_npy(folder.path / "a.npy", shape, [&](size_t i, std::span<float> slice) {
+    for (const float v : slice) CHECK(v == 0.0f);
+    std::copy_n(values.begin() + 4 * i, 4, slice.begin());
+  });
+  NpyReader reader(folder.path / "a.npy");
+  CHECK(reader.shape() == shape);
+  CHECK(reader.type() == NpyType::float32);
+  REQUIRE(reader.slice_size() == 4);
+  std::vector<float> slice(4);
+  for (const size_t i : {2, 0, 1}) {  // in any order
+    reader.read_slice(i, slice);
+    for (size_t k = 0; k < 4; ++k)
+      CHECK(std::bit_cast<uint32_t>(slice[k]) == std::bit_cast<uint32_t>(values[4 * i + k]));
+  }
+}
+
+TEST_CASE("an array file is laid out as NumPy does it", "[npy]") {
+  const TemporaryFolder folder;
+  const std::vector<size_t> shape = {2, 3};
+  write_npy(folder.path / "a.npy", shape, [](size_t i, std::span<float> slice) { slice[2] = float(i + 1); });
+  const std::string content = read_file(folder.path / "a.npy");
+  CHECK(content.starts_with("\x93NUMPY"));
+  REQUIRE(content.size() % 64 == 24);  // values start at a multiple of 64
+  CHECK(content[content.size() - 24 - 1] == '\n');
+  CHECK(contains(content, "'shape': (2,3,)"));
+}
+
+TEST_CASE("bytes read as byte times 1/255", "[npy]") {
+  const TemporaryFolder folder;
+  write_text(folder.path / "a.npy",
+             array_file("{'descr': '|u1', 'fortran_order': False, 'shape': (1, 3), }", std::string("\x00\x7f\xff", 3)));
+  NpyReader reader(folder.path / "a.npy");
+  CHECK(reader.type() == NpyType::uint8);
+  std::vector<float> slice(3);
+  reader.read_slice(0, slice);
+  CHECK(slice == std::vector<float>{0.0f, 127.0f * (1.0f / 255.0f), 1.0f});
+}
+
+TEST_CASE("a damaged array file is refused with its name and the reason", "[npy]") {
+  const std::string values(24, '\0');
+  CHECK(complaint(array_file(float_dictionary, values)) == "read");
+  CHECK(contains(complaint(""), "NumPy"));
+  CHECK(contains(complaint("\x93NUMPZ" + values), "NumPy"));
+  CHECK(contains(complaint("\x93NUM"), "NumPy"));
+  CHECK(contains(complaint(std::string("\x93NUMPY\x07\x00", 8) + values), "version 7"));
+  CHECK(contains(complaint(std::string("\x93NUMPY\x01\x00\xff\xff", 10) + values), "ends too early"));
+  CHECK(contains(complaint(std::string("\x93NUMPY\x02\x00\xff\xff\xff\xff", 12) + values), "length is wrong"));
+  CHECK(contains(complaint(array_file(float_dictionary, values.substr(1))), "truncated"));
+  CHECK(contains(complaint(array_file(float_dictionary, values + "x")), "25 bytes of values instead of 24"));
+  CHECK(
+      contains(complaint(array_file("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }", values)), "'<f8'"));
+  CHECK(
+      contains(complaint(array_file("{'descr': '>f4', 'fortran_order': False, 'shape': (2, 3), }", values)), "'>f4'"));
+  CHECK(
+      contains(complaint(array_file("{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }", values)), "Fortran"));
+  CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, 'shape': (2, -3), }", values)), "-3"));
+  CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, 'shape': (), }", values)),
+                 "0 dimensions"));
+  CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, }", values)), "no 'shape'"));
+  CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, 'shape': "
+                                      "(999999999, 999999999, 999999999), }",
+                                      values)),
+                 "counted"));
+  CHECK(contains(complaint("a text file"), "NumPy"));
+  CHECK_THROWS_AS(NpyReader("/nowhere/a.npy"), Error);
+}
+
+TEST_CASE("a value that is not finite is reported with its place", "[npy]") {
+  std::string values(24, '\0');
+  const float bad = std::nanf("");
+  std::memcpy(values.data() + 4 * 5, &bad, 4);
+  CHECK(complaint(array_file(float_dictionary, values)) == "[1,2]: is not finite");
+  const float infinite = INFINITY;
+  std::memcpy(values.data() + 4, &infinite, 4);
+  CHECK(complaint(array_file(float_dictionary, values)) == "[0,1]: is not finite");
+}
+
+TEST_CASE("an array that cannot be written leaves nothing behind", "[npy]") {
+  const TemporaryFolder folder;
+  const std::vector<size_t> shape = {2, 3};
+  CHECK_THROWS_AS(write_npy(folder.path / "none" / "a.npy", shape, [](size_t, std::span<float>) {}), Error);
+  CHECK_THROWS_AS(write_npy(folder.path / "a.npy", shape, [](size_t, std::span<float>) { throw Interrupted(); }),
+                  Interrupted);
+  CHECK(std::filesystem::is_empty(folder.path));
+}
