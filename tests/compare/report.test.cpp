@@ -183,7 +183,8 @@ TEST_CASE("Every key, the wheel and the pointer work on the page without a scrip
     setTimeout(() => {
       const press = (key, shiftKey = false) => document.dispatchEvent(new KeyboardEvent("keydown", { key, shiftKey }));
       for (const key of "123456 [ ]eEdDrl+-0=") press(key);
-      for (const key of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) { press("1"); press(key); press(key, true); }
+      for (const mode of "13")
+        for (const key of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) [press(mode), press(key), press(key, true)];
       const box = document.getElementById("canvas").getBoundingClientRect();
       const at = { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 };
       document.getElementById("canvas").dispatchEvent(new WheelEvent("wheel", { deltaY: -800, ...at }));

@@ -6,7 +6,8 @@ const { width, height } = data;
 const element = (id) => document.getElementById(id);
 const modes = [
   { name: "swipe", label: "Swipe" }, { name: "flicker", label: "Flicker" }, { name: "cone", label: "Cone" },
-  { name: "path", label: "Path" }, { name: "difference", label: "Difference" }, { name: "error", label: "Relative error" },
+  { name: "path", label: "Path" }, { name: "difference", label: "Difference" },
+  { name: "error", label: "Relative error" },
 ];
 const show = {
   mode: "swipe", layer: 0, exposure: data.exposure, divider: 0.5, flickerCone: true,
@@ -19,7 +20,7 @@ let pictures = {};  // canvases of image size by name, painted when first needed
 
 // ---------------------------------------------------------------------------------------------- reading the data
 
-/** Rows of an 8-bit RGB PNG. Its bytes are read here, not by the browser, which might change them by colour management. */
+/** Rows of an 8-bit RGB PNG. Its bytes are read here because a browser may change them by colour management. */
 async function readPng(base64) {
   const file = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
   const view = new DataView(file.buffer);
@@ -44,7 +45,8 @@ function unfilter(filtered, stride, rows) {
       const at = y * stride + x;
       const left = x >= pixel ? bytes[at - pixel] : 0, up = y > 0 ? bytes[at - stride] : 0;
       const corner = x >= pixel && y > 0 ? bytes[at - stride - pixel] : 0;
-      bytes[at] = filtered[at + y + 1] + [0, left, up, (left + up) >> 1, filter === 4 ? paeth(left, up, corner) : 0][filter];
+      const guess = filter === 4 ? paeth(left, up, corner) : [0, left, up, (left + up) >> 1][filter];
+      bytes[at] = filtered[at + y + 1] + guess;
     }
   }
   return bytes;
@@ -209,28 +211,33 @@ function drawMarker() {
   if (show.zoom < 6) return;
   context.strokeStyle = "#fff";
   context.lineWidth = ratio();
-  context.strokeRect(show.panX + show.pixel[0] * show.zoom, show.panY + show.pixel[1] * show.zoom, show.zoom, show.zoom);
+  const [x, y] = show.pixel;
+  context.strokeRect(show.panX + x * show.zoom, show.panY + y * show.zoom, show.zoom, show.zoom);
 }
 
-const digits = (value) => Number.isFinite(value) ? String(Number(value.toPrecision(3))).replace("-", "−") : "not finite";
+const digits = (value) =>
+  Number.isFinite(value) ? String(Number(value.toPrecision(3))).replace("-", "−") : "not finite";
 
 function updateControls() {
   for (const button of element("modes").children)
     button.setAttribute("aria-checked", String(button.dataset.mode === show.mode));
   element("layer").value = String(show.layer);
   element("exposure").value = String(show.exposure);
-  element("exposure-value").textContent = `${show.exposure >= 0 ? "+" : "−"}${Math.abs(show.exposure).toFixed(2)} stops`;
+  const sign = show.exposure >= 0 ? "+" : "−";
+  element("exposure-value").textContent = `${sign}${Math.abs(show.exposure).toFixed(2)} stops`;
   element("range-value").textContent = "± " + digits(show.range);
+  element("exposure-choice").hidden = ["difference", "error"].includes(show.mode);  // they show numbers, not light
   element("range-choice").hidden = show.mode !== "difference";
-  element("zoom-one").setAttribute("aria-pressed", String(show.zoom === 1));
   updateBar();
   updateReadout();
 }
 
 function updateBar() {
-  const maps = { difference: [data.cool_warm, digits(-show.range), "cone darker · luminance · cone brighter", "+" + digits(show.range)],
-                 error: [data.inferno, "0", "|cone − path| / max(path, 1 % of its mean)", "100 % and more"] };
-  const map = maps[show.mode];
+  const map = {
+    difference:
+      [data.cool_warm, digits(-show.range), "cone darker · luminance · cone brighter", "+" + digits(show.range)],
+    error: [data.inferno, "0", "|cone − path| / max(path, 1 % of its mean)", "100 % and more"],
+  }[show.mode];
   element("bar").hidden = !map;
   if (!map) return;
   const bar = element("bar-canvas").getContext("2d");
@@ -285,16 +292,19 @@ function onKey(event) {
   if (event.key === " " && event.target.tagName === "BUTTON") return;  // presses the button
   const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   const keys = {
-    " ": actions.alternate, "+": () => actions.zoom(2), "=": () => actions.zoom(2), "-": () => actions.zoom(0.5), 0: fit,
+    " ": actions.alternate, 0: fit,
+    "+": () => actions.zoom(2), "=": () => actions.zoom(2), "-": () => actions.zoom(0.5),
     e: () => actions.exposure(show.exposure + 0.25), d: () => actions.exposure(show.exposure - 0.25),
     r: () => actions.exposure(data.exposure), "[": () => actions.range(false), "]": () => actions.range(true),
     l: () => actions.layer(show.layer + 1),
     ArrowLeft: () => actions.divider(-0.01), ArrowRight: () => actions.divider(0.01),
   };
   modes.forEach((mode, i) => { keys[i + 1] = () => actions.mode(mode.name); });
-  const action = event.shiftKey && arrows[event.key] ? () => actions.pan(...arrows[event.key])
-                                                     : keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  if (!action || ((event.key === "ArrowLeft" || event.key === "ArrowRight") && !event.shiftKey && show.mode !== "swipe")) return;
+  const arrow = arrows[event.key];
+  if (arrow && !event.shiftKey && show.mode !== "swipe") return;  // scrolls the page
+  const action = arrow && event.shiftKey ? () => actions.pan(...arrow)
+                                         : keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  if (!action) return;
   event.preventDefault();
   action();
 }
@@ -342,7 +352,6 @@ function listen() {
   element("layer").addEventListener("change", (event) => actions.layer(Number(event.target.value)));
   element("exposure").min = String(Math.floor(data.exposure) - 8);
   element("exposure").max = String(Math.floor(data.exposure) + 8);
-  element("exposure").step = "any";
   element("exposure").addEventListener("input", (event) => actions.exposure(Number(event.target.value)));
   element("range-down").addEventListener("click", () => actions.range(false));
   element("range-up").addEventListener("click", () => actions.range(true));
