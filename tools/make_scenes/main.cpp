@@ -1,11 +1,12 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "error.h"
 #include "make_scenes/catalog.h"
@@ -21,13 +22,11 @@ const SceneEntry& find_entry(const std::string& name) {
   return *found;
 }
 
-void make(const std::filesystem::path& folder, const SceneEntry& entry, const SceneParameters& parameters) {
-  const std::filesystem::path file = folder / entry.file;
-  const Scene scene = build_scene(entry, parameters);
+void write(const std::filesystem::path& file, const Scene& scene, const std::string& text) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
   if (error) throw Error(file.parent_path().string(), error.message());
-  write_glb(file, scene, description(entry, parameters));
+  write_glb(file, scene, text);
   fmt::print("{}: {} triangles\n", file.string(), scene.triangles.size());
 }
 
@@ -60,9 +59,14 @@ int run(int argc, char* argv[]) {
     return 0;
   }
   if (folder.empty()) throw Error("DIR", "says where the files go and is missing");
-  std::vector<SceneEntry> entries;
-  for (const std::string& name : names) entries.push_back(find_entry(name));
-  for (const SceneEntry& entry : names.empty() ? scene_catalog() : entries) make(folder, entry, parameters);
+  if (names.empty())
+    for (const SceneEntry& entry : scene_catalog()) names.push_back(entry.name());
+  std::vector<Scene> scenes(names.size());  // all are built, names and parameters checked, before anything is written
+  for (size_t i = 0; i < names.size(); ++i) scenes[i] = build_scene(find_entry(names[i]), parameters);
+  for (size_t i = 0; i < names.size(); ++i) {
+    const SceneEntry& entry = find_entry(names[i]);
+    write(std::filesystem::path(folder) / entry.file, scenes[i], description(entry, parameters));
+  }
   return 0;
 }
 

@@ -69,7 +69,7 @@ Scene primitives(const ObjectDetail& detail) {
     add_object(scene, name, moved(standing(object_mesh(name, detail)), place), material);
   }
   scene.lights.push_back(daylight());
-  scene.cameras.push_back(camera("front", {0.0f, 3.2f, 6.0f}, {0.0f, 0.2f, 0.0f}, 35.0f, 16.0f / 9.0f));
+  scene.cameras.push_back(camera("front", {0.0f, 3.4f, 6.0f}, {0.0f, 0.3f, 0.0f}, 30.0f, 16.0f / 9.0f));
   return scene;
 }
 

@@ -51,7 +51,7 @@ Scene plane_test() {
   // It stands 0.05 m deep in the slab: no two faces share a plane.
   add_object(scene, "tall_box", box({-1.7f, -0.05f, -1.7f}, {-1.5f, 2.5f, -1.5f}), pillar);
   scene.lights.push_back(sun("sun", {0.5f, -1.0f, 0.35f}, glm::vec3(3.0f)));
-  scene.cameras.push_back(camera("front", {2.2f, 2.2f, 4.2f}, {-0.3f, 0.5f, -0.4f}, 45.0f, 4.0f / 3.0f));
+  scene.cameras.push_back(camera("front", {2.4f, 2.4f, 4.8f}, {-0.2f, 0.7f, -0.4f}, 45.0f, 4.0f / 3.0f));
   return scene;
 }
 
