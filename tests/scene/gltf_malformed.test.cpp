@@ -221,6 +221,14 @@ TEST_CASE("Numbers in buffers are checked as those in the document are", "[gltf]
     builder.json["accessors"][0]["sparse"]["indices"]["bufferView"] = view;
     CHECK(refusal(builder.text()).starts_with("accessors[0].sparse.indices: index 4"));
   }
+  SECTION("sparse indices that do not increase") {
+    const size_t indices = builder.view<uint16_t>({2, 1}), values = builder.view<float>({1, 0, 0, 1, 0, 0});
+    nlohmann::json& sparse = builder.json["accessors"][0]["sparse"];
+    sparse["count"] = 2;
+    sparse["indices"]["bufferView"] = indices;
+    sparse["values"]["bufferView"] = values;
+    CHECK(refusal(builder.text()).starts_with("accessors[0].sparse.indices: index 1 after 2"));
+  }
   SECTION("a vertex out of range") {
     builder.json["nodes"][0]["scale"] = {1e30, 1, 1};
     builder.primitive()["attributes"]["POSITION"] =
