@@ -41,6 +41,7 @@ class Bsdf {
   const SurfacePoint& point_;
   glm::vec3 out_;
   float specular_share_;  // of the samples
+  bool lambertian_;       // most surfaces: what evaluate() does with those is done here, without the call
 };
 
 }  // namespace voxref

@@ -19,11 +19,15 @@ struct Layers {
   glm::vec3& scattered(int times) { return times == 0 ? emission : times == 1 ? direct : indirect; }
 };
 
-/// Where a path is: a surface, or outside the scene.
+/// Where a path meets a surface.
 struct PathVertex {
-  std::optional<SurfacePoint> surface;
-  glm::vec3 to_previous{0.0f};  ///< unit, towards the vertex before
-  float distance = 0.0f;        ///< from there, world units
+  /// @param ray unit direction; the one that hit
+  PathVertex(const Scene& scene, const Hit& hit, const Ray& ray)
+      : to_previous(-ray.direction), distance(hit.t), surface(surface_point(scene, hit, to_previous)) {}
+
+  glm::vec3 to_previous;  ///< unit, towards the vertex before
+  float distance;         ///< from there, world units
+  SurfacePoint surface;
 };
 
 /// Counted along the way; integers, so that their sum does not depend on the order.
@@ -40,10 +44,11 @@ class Integrator {
   /// @param max_depth as PathOptions::max_depth
   Integrator(const Scene& scene, const Caster& caster, const glm::vec3& background, std::optional<int> max_depth);
 
-  /// The vertex that a camera ray (unit direction) finds.
-  PathVertex cast(const Ray& ray, PathCounts& counts) const;
-  /// One path from its first vertex on; dimension 0 of the sampler is left to the caller.
-  Layers trace(const PathVertex& camera_vertex, const Sampler& sampler, PathCounts& counts) const;
+  /// Sets `vertex` to what a ray (unit direction) finds; none where it leaves the scene. In place: copying what was
+  /// just written costs more than the copy.
+  void cast(const Ray& ray, std::optional<PathVertex>& vertex, PathCounts& counts) const;
+  /// One path on from what the camera sees; dimension 0 of the sampler is left to the caller.
+  Layers trace(const std::optional<PathVertex>& seen, const Sampler& sampler, PathCounts& counts) const;
 
  private:
   struct State;

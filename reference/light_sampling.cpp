@@ -40,10 +40,17 @@ AliasTable::AliasTable(std::span<const double> weights) {
   }
 }
 
-uint32_t AliasTable::choose(uint32_t bits) const {
+AliasTable::Choice AliasTable::choose(uint32_t bits) const {
   const uint64_t product = uint64_t{bits} * entries_.size();  // the slot in the upper half, a fraction in the lower
   const auto slot = static_cast<uint32_t>(product >> 32);
-  return (product & 0xffffffffu) < entries_[slot].threshold ? slot : entries_[slot].alias;
+  const uint64_t fraction = product & 0xffffffffu;
+  const uint64_t threshold = entries_[slot].threshold;
+  const bool own = fraction < threshold;
+  const uint64_t place = own ? fraction : fraction - threshold;
+  const uint64_t width = own ? threshold : (uint64_t{1} << 32) - threshold;
+  // Rounding of the two may reach 1, which the largest float below it stands in for.
+  const float rest = std::min(static_cast<float>(place) / static_cast<float>(width), 0x1.fffffep-1f);
+  return {own ? slot : entries_[slot].alias, rest};
 }
 
 namespace {
@@ -132,7 +139,7 @@ std::optional<PunctualSample> LightSampler::sample_punctual(const glm::vec3& poi
                                                             uint32_t bits) const {
   const size_t count = scene_.lights.size();
   if (count > few_lights) {
-    const uint32_t chosen = punctual_.choose(bits);
+    const uint32_t chosen = punctual_.choose(bits).index;
     const Illumination light = illuminate(scene_.lights[chosen], point);
     return PunctualSample{light.to_light, light.distance, light.irradiance / punctual_.probability(chosen)};
   }
@@ -155,10 +162,10 @@ std::optional<PunctualSample> LightSampler::sample_punctual(const glm::vec3& poi
   return PunctualSample{light.to_light, light.distance, light.irradiance * (total / weights[chosen])};
 }
 
-std::optional<EmitterSample> LightSampler::sample_emitter(const glm::vec3& point, uint32_t bits,
-                                                          const glm::vec2& u) const {
-  const Emitter& emitter = emitters_[emitter_table_.choose(bits)];
-  const glm::vec2 uv = uniform_triangle(u);
+std::optional<EmitterSample> LightSampler::sample_emitter(const glm::vec3& point, const glm::uvec2& bits) const {
+  const AliasTable::Choice choice = emitter_table_.choose(bits.x);
+  const Emitter& emitter = emitters_[choice.index];
+  const glm::vec2 uv = uniform_triangle({choice.rest, unit_float(bits.y)});
   EmitterSample sample;
   sample.position = emitter.origin + uv.x * emitter.edge_u + uv.y * emitter.edge_v;
   const glm::vec3 offset = sample.position - point;

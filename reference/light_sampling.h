@@ -18,8 +18,13 @@ class AliasTable {
   explicit AliasTable(std::span<const double> weights);
 
   size_t size() const { return entries_.size(); }
-  /// @param bits uniform over all 32-bit numbers. @returns an index; the table must not be empty
-  uint32_t choose(uint32_t bits) const;
+  /// What chose the index is uniform again within its choice, and so serves once more.
+  struct Choice {
+    uint32_t index = 0;
+    float rest = 0.0f;  ///< in [0,1)
+  };
+  /// @param bits uniform over all 32-bit numbers; the table must not be empty
+  Choice choose(uint32_t bits) const;
   /// Probability of an index, in [0,1].
   float probability(uint32_t index) const { return entries_[index].probability; }
 
@@ -57,14 +62,14 @@ class LightSampler {
  public:
   explicit LightSampler(const Scene& scene);
 
-  bool has_punctual() const { return !scene_.lights.empty(); }
+  size_t punctual_count() const { return scene_.lights.size(); }
   bool has_emitters() const { return !emitters_.empty(); }
 
   /// @param normal unit, of the receiving surface; light from behind it counts as none
-  /// @param bits uniform over all 32-bit numbers
+  /// @param bits uniform over all 32-bit numbers; not used with a single light
   std::optional<PunctualSample> sample_punctual(const glm::vec3& point, const glm::vec3& normal, uint32_t bits) const;
-  /// @param bits uniform over all 32-bit numbers @param u uniform in [0,1)^2
-  std::optional<EmitterSample> sample_emitter(const glm::vec3& point, uint32_t bits, const glm::vec2& u) const;
+  /// @param bits two uniform 32-bit numbers; the first chooses the triangle and, with what is left of it, the point
+  std::optional<EmitterSample> sample_emitter(const glm::vec3& point, const glm::uvec2& bits) const;
   /// Density with which sample_emitter draws a point of `triangle`, per solid angle at a receiver from which the point
   /// is seen along the unit `direction` at `distance`; 0 for a triangle that is never drawn.
   float emitter_pdf(uint32_t triangle, const glm::vec3& direction, float distance) const;

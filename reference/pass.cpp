@@ -92,15 +92,15 @@ PixelBatch PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts
       randomization_key(seed_, static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(pass.number));
   const bool center = view_.pixel == PixelSampling::center;
   PixelSum sum;
-  PathVertex seen;
+  std::optional<PathVertex> seen;
   for (int i = 0; i < pass.samples; ++i) {
     const Sampler sampler(key, static_cast<uint32_t>(i));
     // All samples of a pixel's centre see the same point.
     if (i == 0 || !center)
-      seen = integrator_.cast(rays_(glm::vec2(x, y) + (center ? glm::vec2(0.5f) : sampler.get_2d(0))), counts.paths);
+      integrator_.cast(rays_(glm::vec2(x, y) + (center ? glm::vec2(0.5f) : sampler.get_2d(0))), seen, counts.paths);
     const uint64_t nonfinite_before = counts.paths.nonfinite;
     sum.add(integrator_.trace(seen, sampler, counts.paths));
-    if (seen.surface) sum.add(*seen.surface, glm::dot(seen.surface->position - rays_.eye(), rays_.forward()));
+    if (seen) sum.add(seen->surface, glm::dot(seen->surface.position - rays_.eye(), rays_.forward()));
     if (counts.paths.nonfinite != nonfinite_before) {
       const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x);
       counts.first_nonfinite = std::min(counts.first_nonfinite, SamplePlace{pixel, pass.samples_before + i});

@@ -71,15 +71,20 @@ class Sampler {
   }
   float get_1d(uint32_t dimension) const { return unit_float(bits_1d(dimension)); }  ///< in [0,1)
 
-  /// A two-dimensional set, each component in [0,1).
-  glm::vec2 get_2d(uint32_t dimension) const {
+  /// All 32 bits of both numbers of a two-dimensional set.
+  glm::uvec2 bits_2d(uint32_t dimension) const {
     const uint64_t seeds = dimension_seeds(dimension);
     const uint32_t index = shuffled_index(seeds);
     const uint32_t x = scramble_reversed(index, static_cast<uint32_t>(seeds >> 32));
     // A third seed from the two: the upper half of a product depends on all bits of both.
     const uint64_t second_seeds = (seeds | 1) * 0x9e3779b97f4a7c15u;
     const uint32_t y = scramble_reversed(sobol_second_reversed(index), static_cast<uint32_t>(second_seeds >> 32));
-    return {unit_float(reverse_bits(x)), unit_float(reverse_bits(y))};
+    return {reverse_bits(x), reverse_bits(y)};
+  }
+  /// The same as numbers in [0,1).
+  glm::vec2 get_2d(uint32_t dimension) const {
+    const glm::uvec2 bits = bits_2d(dimension);
+    return {unit_float(bits.x), unit_float(bits.y)};
   }
 
  private:

@@ -124,6 +124,15 @@ TEST_CASE("Sample weights average to the directional albedo, which for a metal n
     }
 }
 
+TEST_CASE("The value is evaluate() times the cosine, for a Lambertian surface too", "[bsdf]") {
+  for (const Reflectance& reflectance : {lambertian(0.5f), metal(0.3f), plastic(0.25f)}) {
+    const SurfacePoint point = flat_point(reflectance);
+    const glm::vec3 out = direction(0.8f, 0.0f), in = direction(0.3f, 2.0f);
+    const glm::vec3 expected = 0.3f * evaluate(reflectance, point.shading_normal, out, in);
+    CHECK(Bsdf(point, out).value(in).g == Approx(expected.g).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("A direction behind the geometric surface carries nothing", "[bsdf]") {
   SurfacePoint point = flat_point(plastic(0.3f));
   point.shading_normal = glm::normalize(glm::vec3(0.6f, 0.0f, 0.8f));
