@@ -15,9 +15,9 @@ namespace voxref {
 
 namespace {
 
-constexpr size_t most_pixels = 512 * 512;
+constexpr size_t most_pixels = size_t{512} * 512;
 /// Of all embedded layers in base64. 3 MiB less the room for the template and the tables.
-constexpr size_t most_layer_bytes = 3 * 1024 * 1024 - 160 * 1024;
+constexpr size_t most_layer_bytes = (size_t{3} * 1024 - 160) * 1024;
 
 /// Four bytes per pixel, Ward 1991: mantissas of 8 bits that share the exponent of the largest; exponent byte 255
 /// stands for a pixel that is not finite. Laid out as a picture, for PNG compresses it well: `height` rows of
