@@ -1,1 +1,92 @@
 #include "pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "voxel/volume_writer.h"
+
+namespace voxref {
+namespace {
+
+/// Runs a stage and adds the time that it took to `seconds`.
+template <class Stage>
+auto timed(double& seconds, const Stage& stage) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = stage();
+  seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+glm::vec3 mean_color(const Image& image) {
+  const auto color = image.layer("");
+  glm::dvec3 sum(0.0);
+  for (size_t i = 0; i < image.pixel_count(); ++i) sum += glm::dvec3(color[0][i], color[1][i], color[2][i]);
+  return glm::vec3(sum / double(image.pixel_count()));
+}
+
+/// Two radiances per voxel (direct, and after the bounces) are held beside the surfaces and one pyramid.
+std::map<std::string, size_t> count_bytes(const SurfaceGrid& surfaces, const Pyramid& pyramid, size_t radiances) {
+  std::map<std::string, size_t> bytes;
+  bytes["surfaces"] = surfaces.bytes();
+  bytes["radiance"] = radiances * surfaces.size() * sizeof(glm::vec3);
+  bytes["base"] = pyramid.base.bytes();
+  for (const auto& level : pyramid.levels) bytes["levels"] += level.bytes();
+  size_t total = 0;
+  for (const auto& [volume, held] : bytes) total += held;
+  bytes["total"] = total;
+  return bytes;
+}
+
+}  // namespace
+
+ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
+                           const ConeTraceOutputs& outputs, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  ConeTraceResult result;
+  StageSeconds& seconds = result.seconds;
+  result.grid = fit_grid(scene.bounds(), settings.grid);
+  std::optional<VolumeFolderWriter> folder;
+  if (outputs.volumes) folder.emplace(*outputs.volumes, result.grid);
+
+  SurfaceGrid surfaces =
+      timed(seconds.voxelize, [&] { return voxelize(scene, result.grid, settings.voxelize, progress); });
+  result.voxels_occupied = surfaces.size();
+  std::vector<glm::vec3> radiance =
+      timed(seconds.shade, [&] { return shade(scene, &caster, surfaces, settings.shade, progress); });
+  Pyramid pyramid = timed(seconds.mipmap, [&] { return mipmap(surfaces, radiance, settings.mipmap, progress); });
+  if (folder) {
+    folder->write_surfaces(surfaces);
+    folder->write_radiance(surfaces, radiance, false);
+    folder->write_levels(pyramid, false);
+  }
+
+  const bool bounces = settings.bounce.count != 0;
+  if (bounces) {
+    BounceResult bounced = timed(seconds.bounce, [&] {
+      return bounce(surfaces, radiance, std::move(pyramid), settings.bounce, settings.render.cone, settings.mipmap,
+                    view.background, progress);
+    });
+    result.bounces = bounced.bounces;
+    result.gain = bounced.gain;
+    pyramid = std::move(bounced.pyramid);
+    if (folder) {
+      folder->write_radiance(surfaces, bounced.radiance, true);
+      folder->write_levels(pyramid, true);
+    }
+  }
+  if (folder) folder->finish();
+
+  result.bytes = count_bytes(surfaces, pyramid, bounces ? 2 : 1);
+  surfaces = {};  // the image needs none of them
+  radiance = {};
+  result.image = timed(seconds.cone_trace, [&] {
+    const Medium medium = make_medium(std::move(pyramid));
+    return render_cones(scene, caster, medium, view, settings.render, progress);
+  });
+  result.mean = mean_color(result.image.image);
+  seconds.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace voxref

@@ -13,19 +13,22 @@
 namespace voxref {
 namespace {
 
-/// What one ray through the image sees: the layers of the image.
+/// What rays through the image see, summed: the layers of the image.
 struct Seen {
   glm::vec3 color{0.0f}, direct{0.0f}, diffuse{0.0f}, specular{0.0f}, emission{0.0f}, albedo{0.0f}, normal{0.0f};
-  float ao = 1.0f, depth = 0.0f;
+  float ao = 0.0f, depth = 0.0f, rays = 0.0f, hits = 0.0f;
 
   Seen& operator+=(const Seen& other) {
     color += other.color, direct += other.direct, diffuse += other.diffuse, specular += other.specular;
     emission += other.emission, albedo += other.albedo, normal += other.normal;
-    ao += other.ao, depth += other.depth;
+    ao += other.ao, depth += other.depth, rays += other.rays, hits += other.hits;
     return *this;
   }
-  Seen operator*(float f) const {
-    return {color * f, direct * f, diffuse * f, specular * f, emission * f, albedo * f, normal * f, ao * f, depth * f};
+  /// Light is the mean over all rays; albedo, normal and depth are those of what was hit, 0 where nothing was.
+  Seen mean() const {
+    const float all = 1.0f / rays, hit = hits > 0.0f ? 1.0f / hits : 0.0f;
+    return {color * all,  direct * all, diffuse * all, specular * all, emission * all, albedo * hit,
+            normal * hit, ao * all,     depth * hit,   1.0f,           hits * all};
   }
 };
 
@@ -45,13 +48,14 @@ class Renderer {
   /// Mean over the pixel's sub-positions: its centre, or a regular 4 x 4 grid (as finely as cone tracing, which is
   /// smooth over a voxel, can tell; edges keep 16 shades).
   Seen pixel(int x, int y) const {
-    if (view_.pixel == PixelSampling::center) return position({float(x) + 0.5f, float(y) + 0.5f});
-    constexpr int side = 4;
-    Seen sum{.ao = 0.0f};
+    const int side = view_.pixel == PixelSampling::center ? 1 : 4;
+    Seen sum;
     for (int j = 0; j < side; ++j)
-      for (int i = 0; i < side; ++i)
-        sum += position({float(x) + (float(i) + 0.5f) / side, float(y) + (float(j) + 0.5f) / side});
-    return sum * (1.0f / (side * side));
+      for (int i = 0; i < side; ++i) {
+        const glm::vec2 offset = (glm::vec2(i, j) + 0.5f) / float(side);
+        sum += position(glm::vec2(x, y) + offset);
+      }
+    return sum.mean();
   }
 
  private:
@@ -59,17 +63,20 @@ class Renderer {
     const Ray ray = rays_(where);
     const Hit hit = caster_.closest(ray);
     Seen seen;
+    seen.rays = seen.ao = 1.0f;
     if (!hit) {
-      seen.color = view_.background;
+      seen.color = seen.emission = view_.background;
       return seen;
     }
+    seen.hits = 1.0f;
     const glm::vec3 to_viewer = -glm::normalize(ray.direction);
     const SurfacePoint point = surface_point(scene_, hit, to_viewer);
     const float n_v = std::clamp(glm::dot(point.shading_normal, to_viewer), 0.0f, 1.0f);
     seen.normal = point.shading_normal;
     seen.depth = glm::dot(point.position - rays_.eye(), rays_.forward());
     seen.emission = point.emission;
-    seen.albedo = hemispherical_albedo(point.reflectance);
+    const Reflectance& reflectance = point.reflectance;
+    seen.albedo = reflectance.diffuse * (1.0f - reflectance.layer_f0) + reflectance.specular_f0;  // as the path tracer
     seen.direct = direct(point, to_viewer);
     indirect(point, to_viewer, n_v, seen);
     seen.color = (seen.direct + seen.diffuse + seen.specular) * seen.ao + seen.emission;

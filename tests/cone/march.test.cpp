@@ -46,7 +46,8 @@ struct PlainMarch {
   ConeSample operator()(const glm::dvec3& origin, const glm::dvec3& d, double tangent, double step,
                         const glm::dvec3& background) const {
     const glm::ivec3& size = medium.texels.grid.size;
-    const int top = std::max(0, int(std::floor(std::log2(std::max({size.x, size.y, size.z}) / 4.0))));
+    const double widest = std::max(std::min({size.x, size.y, size.z}) / 4.0, std::max({size.x, size.y, size.z}) / 16.0);
+    const int top = std::max(0, int(std::floor(std::log2(widest))));
     const auto side = [&](double s) { return std::clamp(2.0 * s * tangent, 1.0, std::exp2(top)); };
     const glm::dvec3 a = -origin / d, b = (glm::dvec3(medium.texels.grid.size) - origin) / d;
     double end = std::min({std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)});
