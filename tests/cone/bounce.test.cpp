@@ -129,7 +129,8 @@ TEST_CASE("A thin sheet gathers from both sides and takes the mean", "[bounce]")
   options.count = 1;
   const BounceResult result = bounce(surfaces, direct, options, {}, {}, glm::vec3(0.0f));
   const size_t middle = surfaces.size() - 1 - size_t(28 * 14 + 14);
-  CHECK(result.radiance[middle].r == Approx(0.5f * 0.8f).epsilon(0.03));  // gathers are good to 2 %, light leaks 1 %
+  CHECK(result.radiance[middle].r ==
+        Approx(0.5f * 0.8f).epsilon(0.05));  // six cones at its centre: 0.97 at worst, two gathers
 }
 
 TEST_CASE("A bounce under way can be stopped", "[bounce]") {
