@@ -80,8 +80,7 @@ TEST_CASE("Coverage of circular cones: one cone's cap is all there is, more cone
   for (const int count : {6, 32, 256}) {
     CAPTURE(count);
     const voxref::Coverage c = voxref::coverage(voxref::partition_hemisphere(count));
-    // Circles of the cells' own solid angle: what they miss they cover elsewhere, some of it in the horizon's other
-    // side.
+    // Circles have their cells' solid angle: what they leave out they cover elsewhere, twice or below the horizon.
     CHECK(c.covered > 0.8);
     CHECK(c.covered <= 1.0);
     CHECK(c.overlap < 0.2);

@@ -47,8 +47,8 @@ struct PlainMarch {
                         const glm::dvec3& background) const {
     const glm::ivec3& size = medium.texels.grid.size;
     const double widest = std::max(std::min({size.x, size.y, size.z}) / 4.0, std::max({size.x, size.y, size.z}) / 16.0);
-    const int top = std::max(0, int(std::floor(std::log2(widest))));
-    const auto side = [&](double s) { return std::clamp(2.0 * s * tangent, 1.0, std::exp2(top)); };
+    const double coarsest = std::max(widest, 1.0);
+    const auto side = [&](double s) { return std::clamp(2.0 * s * tangent, 1.0, coarsest); };
     const glm::dvec3 a = -origin / d, b = (glm::dvec3(medium.texels.grid.size) - origin) / d;
     double end = std::min({std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)});
     end += 1.5 * side(end);
@@ -59,7 +59,7 @@ struct PlainMarch {
       const double level = std::log2(side(middle));
       const int k = int(level);
       glm::dvec4 sample = trilinear(k, origin + middle * d, d);
-      if (k < top) sample += (level - k) * (trilinear(k + 1, origin + middle * d, d) - sample);
+      if (level > k) sample += (level - k) * (trilinear(k + 1, origin + middle * d, d) - sample);
       s += length;
       if (sample.a == 0.0) continue;
       double absorbed = left * (1.0 - std::exp(-sample.a * length));
