@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <string>
+#include <glm/exponential.hpp>
 
 #include "parallel.h"
 

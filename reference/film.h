@@ -17,8 +17,9 @@ namespace voxref {
 ///
 ///   standard error^2 = sum n_i^2 (m_i - m)^2 / (N^2 - sum n_i^2),
 ///
-/// the cluster estimator of survey sampling (Cochran 1977, section 2.11 for equal n_i, where it is the textbook
-/// variance of a mean of means). It needs no assumption on how a pass's variance falls with its number of samples.
+/// the ratio estimator of cluster sampling (Cochran 1977, Sampling Techniques). With equal n_i it is the textbook
+/// variance of a mean of means; with unequal ones it is right but for terms of relative order 1 / passes, however a
+/// pass's variance falls with its number of samples.
 class Film {
  public:
   Film(int width, int height);

@@ -17,7 +17,6 @@ class AliasTable {
   /// @param weights finite, none negative; all zero: uniform
   explicit AliasTable(std::span<const double> weights);
 
-  size_t size() const { return entries_.size(); }
   /// What chose the index is uniform again within its choice, and so serves once more.
   struct Choice {
     uint32_t index = 0;

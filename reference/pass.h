@@ -1,11 +1,11 @@
 #pragma once
-#include <compare>
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "progress.h"
@@ -27,7 +27,9 @@ struct PixelBatch {
 struct SamplePlace {
   size_t pixel = std::numeric_limits<size_t>::max();  ///< row by row; the largest number: nowhere
   int sample = 0;
-  auto operator<=>(const SamplePlace&) const = default;
+  bool operator<(const SamplePlace& other) const {
+    return std::tie(pixel, sample) < std::tie(other.pixel, other.sample);
+  }
 };
 
 /// What a pass found on the side.
