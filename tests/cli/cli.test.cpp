@@ -1,1 +1,328 @@
+// Runs the real program in a folder of its own, as a script would.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
 #include "catch.h"
+#include "file.h"
+#include "image/image_file.h"
+#include "make_scenes/builders.h"
+#include "make_scenes/gltf_writer.h"
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A temporary folder in which the program runs; it holds point.glb (Cornell box, point light) and empty.gltf.
+class Workplace {
+ public:
+  Workplace() {
+    static int number = 0;
+    folder_ = fs::temp_directory_path() / ("voxref_cli_" + std::to_string(getpid()) + "_" + std::to_string(number++));
+    fs::create_directories(folder_ / "run");
+    voxref::write_glb(path("point.glb"), voxref::cornell_box(voxref::CornellLight::point), "for the tests");
+    voxref::write_text(path("empty.gltf"), R"({"asset": {"version": "2.0"}})");
+  }
+  ~Workplace() { fs::remove_all(folder_); }
+  Workplace(const Workplace&) = delete;
+
+  fs::path path(const std::string& name) const { return folder_ / "run" / name; }
+
+  /// @param before goes in front of the program, for instance "timeout 1"
+  Outcome run(const std::string& arguments, const std::string& before = "") const {
+    const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
+    const std::string line = "cd '" + path("").string() + "' && " + before + " '" VOXREF_PROGRAM "' " + arguments +
+                             " >'" + out + "' 2>'" + err + "'";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, voxref::read_file(out), voxref::read_file(err)};
+  }
+
+  json run_json(const std::string& arguments) const {
+    const Outcome outcome = run(arguments + " --json");
+    INFO(arguments << "\n" << outcome.err);
+    REQUIRE(outcome.status == 0);
+    return json::parse(outcome.out);
+  }
+
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(path(""))) names.insert(entry.path().string());
+    return names;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+/// Exit 2, one line that begins with "voxref: " and says `reason`, nothing on stdout, nothing written.
+void check_refused(const Workplace& place, const std::string& arguments, const std::string& reason) {
+  const std::set<std::string> before = place.files();
+  const Outcome outcome = place.run(arguments);
+  INFO(arguments << "\n" << outcome.err);
+  CHECK(outcome.status == 2);
+  CHECK(outcome.out == "");
+  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  CHECK(outcome.err.substr(0, 8) == "voxref: ");
+  CHECK(contains(outcome.err, reason));
+  CHECK(place.files() == before);
+}
+
+void check_same_bits(const voxref::Image& a, const voxref::Image& b) {
+  REQUIRE(a.channels() == b.channels());
+  for (const std::string& name : a.channels()) {
+    CAPTURE(name);
+    const auto p = a.channel(name), q = b.channel(name);
+    CHECK((p.size() == q.size() && std::memcmp(p.data(), q.data(), p.size_bytes()) == 0));
+  }
+}
+
+bool has_keys(const json& object, const std::vector<std::string>& keys) {
+  return std::all_of(keys.begin(), keys.end(), [&](const std::string& key) { return object.contains(key); });
+}
+
+const std::vector<std::string> path_keys = {"mean", "mean_stderr",     "spp",      "seconds",
+                                            "rays", "rays_per_second", "nonfinite"};
+const std::vector<std::string> cone_keys = {"mean", "seconds", "bytes", "voxels_occupied", "grid", "nonfinite"};
+const std::string small_view = " --size 12x10 ";
+const std::string small_cone = " --size 12x10 --set grid.resolution=24 --set bounce.count=1 ";
+
+}  // namespace
+
+TEST_CASE("every command has help with an example", "[cli]") {
+  const Workplace place;
+  for (const char* command : {"", "info", "path", "cone", "check", "stage", "bench"}) {
+    const Outcome outcome = place.run(std::string(command) + " --help");
+    CAPTURE(command);
+    CHECK(outcome.status == 0);
+    CHECK(outcome.err == "");
+    CHECK(contains(outcome.out, "Example"));
+    CHECK(contains(outcome.out, std::string("voxref ") + command));
+  }
+  CHECK(place.run("--version").out == "voxref 0.1.0\n");
+}
+
+TEST_CASE("a bad scene file is refused in one line", "[cli]") {
+  const Workplace place;
+  fs::copy_file(place.path("point.glb"), place.path("truncated.glb"));
+  fs::resize_file(place.path("truncated.glb"), fs::file_size(place.path("point.glb")) / 2);
+  voxref::write_text(place.path("text.glb"), "this is a poem, not a scene\n");
+  for (const std::string command : {"info ", "path -o out.exr ", "cone -o out.exr ", "check -o out "}) {
+    check_refused(place, command + "missing.glb", "missing.glb");
+    check_refused(place, command + "truncated.glb", "truncated.glb");
+    check_refused(place, command + "text.glb", "text.glb");
+  }
+  check_refused(place, "bench missing.glb", "missing.glb");
+}
+
+TEST_CASE("a bad command line is refused in one line that names the flag", "[cli]") {
+  const Workplace place;
+  check_refused(place, "", "no command");
+  check_refused(place, "dance", "'dance'");
+  check_refused(place, "--frobnicate", "--frobnicate: unknown flag");
+  check_refused(place, "path", "SCENE");
+  check_refused(place, "path point.glb", "-o");
+  check_refused(place, "path point.glb second.glb -o out.exr", "second.glb");
+  check_refused(place, "path point.glb -o out.exr --frobnicate", "--frobnicate: unknown flag");
+  check_refused(place, "path point.glb -o out.exr --frobnicate=3", "--frobnicate: unknown flag");
+  check_refused(place, "path point.glb -o out.exr --spp", "--spp");
+  for (const std::string size :
+       {"0x0", "16x0", "-4x4", "16", "16x16x16", "16x", "x", "65537x1", "1e2x4", "65536x65536"})
+    check_refused(place, "path point.glb -o out.exr --size " + size, "--size: ");
+  for (const std::string value :
+       {"--spp 0",         "--spp 1.5",      "--spp -1",         "--spp ten",           "--noise nan",
+        "--noise 0",       "--time inf",     "--time -1",        "--max-depth -1",      "--seed 1x",
+        "--threads 0",     "--threads many", "--light-scale -1", "--light-scale nan",   "--at nan",
+        "--pixel corner",  "--yfov 180",     "--background 1,2", "--background -1,0,0", "--background 1,1,1,1",
+        "--camera nobody", "--camera 99",    "--eye 0,0",        "--eye 1,2,3",         "--target 1,2,3",
+        "--up 0,1,0"})
+    check_refused(place, "path point.glb -o out.exr " + value, "--");
+  check_refused(place, "cone point.glb -o out.exr --profile villegas2016", "--profile: ");
+  check_refused(place, "cone point.glb -o out.exr --set cone.stepp=1", "cone.step");
+  check_refused(place, "cone point.glb -o out.exr --set grid.resolution=8", "16 to 2048");
+  check_refused(place, "cone point.glb -o out.exr --config missing.json", "missing.json");
+  check_refused(place, "check point.glb -o out --budget much", "--budget: ");
+  check_refused(place, "stage melt --from point -o out", "'melt'");
+  check_refused(place, "stage mipmap --from missing -o out", "missing");
+  check_refused(place, "stage shade --from missing -o out", "missing");
+}
+
+TEST_CASE("a settings file is refused with its name and what is wrong in it", "[cli]") {
+  const Workplace place;
+  voxref::write_text(place.path("broken.json"), "{\"cone\": ");
+  voxref::write_text(place.path("unknown.json"), R"({"cone": {"steps": 1}})");
+  check_refused(place, "cone point.glb -o out.exr --config broken.json", "broken.json: ");
+  check_refused(place, "cone point.glb -o out.exr --config unknown.json", "unknown.json: cone.steps: ");
+}
+
+TEST_CASE("an output that cannot be written is refused before any work", "[cli]") {
+  const Workplace place;
+  fs::create_directory(place.path("folder"));
+  voxref::write_text(place.path("file"), "");
+  for (const std::string command : {"path", "cone"}) {
+    check_refused(place, command + " point.glb -o nowhere/out.exr", "nowhere");
+    check_refused(place, command + " point.glb -o folder", "folder");
+    check_refused(place, command + " point.glb -o file/out.exr", "file");
+  }
+  check_refused(place, "check point.glb -o file", "file");
+  check_refused(place, "check point.glb -o file/deeper", "file");
+  check_refused(place, "cone point.glb -o out.exr --volumes file", "file");
+  check_refused(place, "stage mipmap --from folder -o file", "file");
+}
+
+TEST_CASE("--json prints one object with the keys that scripts read", "[cli]") {
+  const Workplace place;
+  const json info = place.run_json("info point.glb");
+  CHECK(info["triangles"] > 0);
+  CHECK(info["lights"].size() == 1);
+  CHECK(info["volumes"].size() == 4);
+  for (const json& volume : info["volumes"])
+    CHECK(volume["bytes"]["total"] == volume["bytes"]["surfaces"].get<size_t>() +
+                                          volume["bytes"]["base"].get<size_t>() +
+                                          volume["bytes"]["levels"].get<size_t>());
+
+  const json path = place.run_json("path point.glb -o path.exr --spp 4" + small_view);
+  CHECK(has_keys(path, path_keys));
+  CHECK(path["spp"] == 4);
+  CHECK(path["rays"] >= 12 * 10 * 4);
+
+  const json cone = place.run_json("cone point.glb -o cone.exr" + small_cone);
+  CHECK(has_keys(cone, cone_keys));
+  CHECK(has_keys(cone["seconds"], {"voxelize", "shade", "mipmap", "bounce", "cone_trace", "total"}));
+  CHECK(cone["bytes"].contains("total"));
+  CHECK(cone["grid"].size() == 3);
+
+  const json check = place.run_json("check point.glb -o checked --spp 4" + small_cone);
+  CHECK(has_keys(check["path"], path_keys));
+  CHECK(has_keys(check["cone"], cone_keys));
+  CHECK(has_keys(check["metrics"], {"mean_ratio", "rel_error", "rmse", "relmse", "relmse_formula", "psnr", "ssim",
+                                    "flip", "noise_share"}));
+  CHECK(check["within_budget"].is_null());
+  CHECK(fs::exists(place.path("checked/report.html")));
+  CHECK(json::parse(voxref::read_file(place.path("checked/result.json")))["metrics"] == check["metrics"]);
+
+  const json bench = place.run_json("bench point.glb --rounds 2 --seconds 0.05" + small_cone);
+  CHECK(bench["scenes"].size() == 1);
+  CHECK(bench["scenes"][0]["ratio"]["min"] <= bench["scenes"][0]["ratio"]["max"]);
+  CHECK(bench["scenes"][0]["ratio"]["min"] > 0);
+}
+
+TEST_CASE("an error beyond the budget ends check with 1, one within it with 0", "[cli]") {
+  const Workplace place;
+  const std::string command = "check point.glb -o out --quiet --spp 4" + small_cone;
+  CHECK(place.run(command + "--budget 1e6").status == 0);
+  // Sixteen samples of a box of 24 voxels never agree to a billionth.
+  CHECK(place.run(command + "--budget 1e-9 --spp 16").status == 2);  // a flag twice is a mistake
+  CHECK(place.run(command + "--budget 1e-9").status == 1);
+}
+
+TEST_CASE("--quiet says nothing, and without it the summary goes to stdout", "[cli]") {
+  const Workplace place;
+  const Outcome quiet = place.run("path point.glb -o out.exr --spp 1 --quiet" + small_view);
+  CHECK(quiet.status == 0);
+  CHECK(quiet.out == "");
+  CHECK(quiet.err == "");
+  const Outcome usual = place.run("path point.glb -o out.exr --spp 1" + small_view);
+  CHECK(contains(usual.out, "out.exr"));
+  CHECK(usual.err == "");
+}
+
+TEST_CASE("one thread and two write the same pixels", "[cli]") {
+  const Workplace place;
+  for (const std::string command :
+       {"path point.glb --spp 8 --size 48x40", "cone point.glb --size 48x40 --set grid.resolution=32"}) {
+    CAPTURE(command);
+    REQUIRE(place.run(command + " --threads 1 -o one.exr").status == 0);
+    REQUIRE(place.run(command + " --threads 2 -o two.exr").status == 0);
+    check_same_bits(voxref::read_image(place.path("one.exr")), voxref::read_image(place.path("two.exr")));
+  }
+}
+
+TEST_CASE("an image's header says where it comes from", "[cli]") {
+  const Workplace place;
+  REQUIRE(place.run("path point.glb -o path.exr --spp 2 --seed 7" + small_view).status == 0);
+  const auto header = voxref::read_image(place.path("path.exr")).attributes;
+  const auto value = [&](const std::string& key) {
+    const auto found = header.find("voxref:" + key);
+    return found == header.end() ? "(none)" : found->second;
+  };
+  CHECK(value("version") == "0.1.0");
+  CHECK(value("seed") == "7");
+  CHECK(value("spp") == "2");
+  CHECK(contains(value("command_line"), "--seed 7"));
+  const std::string bytes = voxref::read_file(place.path("point.glb"));
+  CHECK(value("scene_sha256") == voxref::sha256(std::as_bytes(std::span(bytes))));
+  CHECK(json::parse(value("camera"))["size"] == json({12, 10}));
+  CHECK(contains(value("libraries"), "Embree"));
+
+  REQUIRE(place.run("cone point.glb -o cone.exr" + small_cone).status == 0);
+  const auto cone_header = voxref::read_image(place.path("cone.exr")).attributes;
+  CHECK(json::parse(cone_header.at("voxref:settings"))["grid"]["resolution"] == 24);
+}
+
+TEST_CASE("a scene without triangles renders its background", "[cli]") {
+  const Workplace place;
+  const json expected = {0.5, 0.25, 0.125};
+  const std::string view = " empty.gltf --size 6x4 --background 0.5,0.25,0.125 ";
+  CHECK(place.run_json("path -o path.exr --spp 2" + view)["mean"] == expected);
+  CHECK(place.run_json("cone -o cone.exr --set grid.resolution=16" + view)["mean"] == expected);
+  const json check = place.run_json("check -o out --spp 2 --set grid.resolution=16" + view);
+  CHECK(check["path"]["mean"] == expected);
+  CHECK(check["cone"]["mean"] == expected);
+  CHECK(place.run("info empty.gltf").status == 0);
+}
+
+TEST_CASE("stages run on written volumes give what the whole pipeline gave", "[cli]") {
+  const Workplace place;
+  REQUIRE(place.run("cone point.glb -o cone.exr --volumes volumes" + small_cone).status == 0);
+  const auto same_file = [&](const std::string& stage, const std::string& volume) {
+    CAPTURE(stage, volume);
+    CHECK(voxref::read_file(place.path(stage + "/" + volume)) == voxref::read_file(place.path("volumes/" + volume)));
+  };
+  REQUIRE(place.run("stage shade --from volumes point.glb -o shaded").status == 0);
+  same_file("shaded", "radiance.npy");
+  REQUIRE(place.run("stage mipmap --from volumes -o filtered").status == 0);
+  same_file("filtered", "aniso_neg_x_0.npy");
+  same_file("filtered", "aniso_bounce_pos_z_1.npy");
+  REQUIRE(place.run("stage bounce --from volumes -o bounced --set bounce.count=1").status == 0);
+  same_file("bounced", "radiance_bounce.npy");
+  REQUIRE(place.run("stage gather --from volumes point.glb -o gathered" + small_view).status == 0);
+  check_same_bits(voxref::read_image(place.path("gathered/gather.exr")), voxref::read_image(place.path("cone.exr")));
+}
+
+TEST_CASE("an interrupted path tracer writes the samples it has and ends with 1", "[cli]") {
+  const Workplace place;
+  // SIGINT after two seconds: time for the program to start and take samples even under a sanitizer on a busy machine.
+  const Outcome outcome =
+      place.run("path point.glb -o out.exr --spp 16777216 --json" + small_view, "timeout --preserve-status -s INT 2");
+  INFO(outcome.err);
+  CHECK(outcome.status == 1);
+  CHECK(contains(outcome.err, "interrupted"));
+  const int spp = json::parse(outcome.out)["spp"].get<int>();
+  CHECK(spp > 0);
+  CHECK(spp < 16777216);
+  CHECK(voxref::read_image(place.path("out.exr")).channel("samples")[0] == static_cast<float>(spp));
+}
+
+TEST_CASE("an interrupted cone tracer writes nothing and ends with 2", "[cli]") {
+  const Workplace place;
+  const Outcome outcome = place.run("cone point.glb -o out.exr --quiet --set bounce.count=1000 --set bounce.cones=64",
+                                    "timeout --preserve-status -s INT 1");
+  INFO(outcome.err);
+  CHECK(outcome.status == 2);
+  CHECK(contains(outcome.err, "interrupted"));
+  CHECK(!fs::exists(place.path("out.exr")));
+}

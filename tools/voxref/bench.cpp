@@ -1,1 +1,162 @@
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
+
+#include "bench_rays.h"
+#include "commands.h"
+#include "json.h"
+#include "parallel.h"
+#include "parse.h"
+#include "summary.h"
+
+namespace voxref {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> scenes;
+  ViewOptions view;
+  SettingsOptions settings;
+  int rounds = 5;
+  double seconds = 1.0;  ///< of path tracing per round
+};
+
+/// Several measurements of one thing.
+struct Spread {
+  double median = 0, least = 0, greatest = 0;
+};
+
+Spread spread(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t middle = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return {median, values.front(), values.back()};
+}
+
+nlohmann::json to_json(const Spread& s) { return {{"median", s.median}, {"min", s.least}, {"max", s.greatest}}; }
+
+struct SceneBench {
+  std::string scene;
+  Spread path, bare;  ///< million rays per second
+  Spread ratio;       ///< path / bare of the same round
+  StageSeconds stages;
+};
+
+/// Path tracing and the bare loop in turn, so that a machine that slows down or speeds up treats both alike.
+void bench_rays(SceneBench& bench, const Scene& scene, const Caster& caster, const View& view, const Options& options,
+                const Progress& progress) {
+  constexpr size_t pool = size_t{1} << 20;  // 32 MiB: beyond the caches, as a path tracer's rays come from nowhere near
+  const std::vector<Ray> rays = incoherent_rays(scene, caster, pool);
+  std::vector<double> path, bare, ratio;
+  for (int round = 0; round < options.rounds; ++round) {
+    PathOptions timed;
+    timed.spp = 0;
+    timed.seconds = options.seconds;
+    timed.seed = static_cast<uint64_t>(round);
+    const PathResult result = path_trace(scene, caster, view, timed, progress);
+    progress.check();
+    const double count = static_cast<double>(result.rays);
+    path.push_back(1e-6 * count / result.seconds);
+    bare.push_back(1e-6 * count / cast_seconds(caster, rays, result.rays));
+    ratio.push_back(path.back() / bare.back());
+  }
+  bench.path = spread(path);
+  bench.bare = spread(bare);
+  bench.ratio = spread(ratio);
+}
+
+SceneBench bench_scene(const std::string& file, const Options& options, const Settings& settings, Terminal& terminal) {
+  const Scene scene = load_scene({file, {}}, terminal);
+  const View view = make_view(options.view, scene);
+  const Caster caster(scene);
+  // The progress is for Ctrl-C alone: drawing it would be measured too.
+  Progress silent = terminal.progress();
+  silent.report = nullptr;
+  SceneBench bench;
+  bench.scene = file;
+  bench_rays(bench, scene, caster, view, options, silent);
+  bench.stages = cone_trace(scene, caster, view, settings, {}, silent).seconds;
+  return bench;
+}
+
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (const size_t colon = line.find(": "); line.starts_with("model name") && colon != std::string::npos)
+      return line.substr(colon + 2);
+  return "unknown processor";
+}
+
+std::vector<std::string> default_scenes() {
+  const std::string usual = "scenes/cornell_box.glb";
+  if (!std::filesystem::exists(usual)) throw Error("SCENE", "needed here: there is no " + usual + " in this folder");
+  return {usual};
+}
+
+void say(Terminal& terminal, const SceneBench& bench) {
+  const auto line = [&](const char* what, const Spread& s, const char* unit) {
+    terminal.say(fmt::format("  {:<28} {:>8.3f}  ({:.3f} to {:.3f}){}", what, s.median, s.least, s.greatest, unit));
+  };
+  terminal.say(bench.scene);
+  line("path tracing", bench.path, " million rays/s");
+  line("bare casting", bench.bare, " million rays/s");
+  line("ratio", bench.ratio, "");
+  const StageSeconds& s = bench.stages;
+  terminal.say(
+      fmt::format("  cone tracing                 voxelize {:.3f} s, shade {:.3f} s, mipmap {:.3f} s, bounce {:.3f} s, "
+                  "cone trace {:.3f} s",
+                  s.voxelize, s.shade, s.mipmap, s.bounce, s.cone_trace));
+}
+
+int run_bench(const Options& options) {
+  const Settings settings = make_settings(options.settings);
+  const ThreadLimit threads(options.common.threads);
+  Terminal terminal(options.common);
+  const std::string cpu = cpu_model();
+  nlohmann::json result = {{"version", VOXREF_VERSION},
+                           {"cpu", cpu},
+                           {"threads", thread_count()},
+                           {"rounds", options.rounds},
+                           {"scenes", nlohmann::json::array()}};
+  terminal.say(
+      fmt::format("{}, {} threads; medians of {} rounds (least to greatest)", cpu, thread_count(), options.rounds));
+  for (const std::string& file : options.scenes.empty() ? default_scenes() : options.scenes) {
+    const SceneBench bench = bench_scene(file, options, settings, terminal);
+    say(terminal, bench);
+    result["scenes"].push_back({{"scene", file},
+                                {"path_million_rays_per_second", to_json(bench.path)},
+                                {"bare_million_rays_per_second", to_json(bench.bare)},
+                                {"ratio", to_json(bench.ratio)},
+                                {"cone_seconds", to_json(bench.stages)}});
+  }
+  terminal.result(result);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("bench", "path tracing beside bare ray casting; the cone tracer's stages");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scenes, "glTF 2.0 files (default: scenes/cornell_box.glb)")->type_name("");
+  add_value_option(*command, "--rounds", "N", "measurements of each (default: 5)", [options](const std::string& text) {
+    options->rounds = static_cast<int>(parse_integer("--rounds", text, 1, 1000));
+  });
+  add_value_option(
+      *command, "--seconds", "S", "of path tracing per round (default: 1)",
+      [options](const std::string& text) { options->seconds = parse_number("--seconds", text, 0.01, 3600); });
+  add_settings_options(*command, options->settings);
+  add_view_options(*command, options->view);
+  add_common_options(*command, options->common);
+  command->footer(
+      "The bare loop casts as many rays as the path tracer did, with the same threads, and does nothing else:\n"
+      "prepared beforehand, from random surface points, one in a cosine-distributed direction (closest hit) and one "
+      "to\n"
+      "a light (occlusion) in turn. It calls Embree through the same thin class as the path tracer.\n\n"
+      "Example:\n  voxref bench scenes/cornell_box.glb --rounds 9");
+  on_run(command, run, [options] { return run_bench(*options); });
+}
+
+}  // namespace voxref

@@ -1,1 +1,74 @@
+#include <fmt/format.h>
 
+#include "commands.h"
+#include "file.h"
+#include "image/image_file.h"
+#include "json.h"
+#include "parallel.h"
+#include "pipeline.h"
+#include "provenance.h"
+#include "summary.h"
+
+namespace voxref {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  SceneOptions scene;
+  ViewOptions view;
+  SettingsOptions settings;
+  std::string output, volumes;
+};
+
+int run_cone(const Options& options) {
+  const Settings settings = make_settings(options.settings);
+  require_writable(options.output);
+  ConeTraceOutputs outputs;
+  if (!options.volumes.empty()) {
+    require_folder(options.volumes);
+    outputs.volumes = options.volumes;
+  }
+  const ThreadLimit threads(options.common.threads);
+  Terminal terminal(options.common);
+  const Scene scene = load_scene(options.scene, terminal);
+  const View view = make_view(options.view, scene);
+  const Caster caster(scene);
+  ConeTraceResult result = cone_trace(scene, caster, view, settings, outputs, terminal.progress());
+
+  nlohmann::json origin = provenance(scene, view);
+  origin["settings"] = to_json(settings);
+  attach(result.image.image, origin);
+  write_exr(options.output, result.image.image);
+
+  say(terminal, result);
+  terminal.say("written   " + options.output);
+  if (outputs.volumes) terminal.say("volumes   " + options.volumes);
+  terminal.result(to_json(result));
+  return exit_done;
+}
+
+std::string parameter_table() {
+  std::string table = "Parameters (--set KEY=VALUE, or nested JSON in a --config file): default, range, meaning\n";
+  for (const ParameterHelp& line : parameter_help())
+    table += fmt::format("  {:<29} {:<16} {:<30} {}\n", line.key, line.value, line.range, line.meaning);
+  return table;
+}
+
+}  // namespace
+
+void add_cone(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("cone", "voxelizes, shades, filters and cone traces a scene");
+  const auto options = std::make_shared<Options>();
+  add_scene_options(*command, options->scene);
+  add_output_option(*command, options->output, "FILE", "OpenEXR file to write");
+  add_settings_options(*command, options->settings);
+  command->add_option("--volumes", options->volumes, "also writes every volume into this folder")->type_name("DIR");
+  add_view_options(*command, options->view);
+  add_common_options(*command, options->common);
+  command->footer(parameter_table() +
+                  "\nExample:\n  voxref cone scenes/cornell_box_point.glb -o cone.exr --set grid.resolution=128");
+  on_run(command, run, [options] { return run_cone(*options); });
+}
+
+}  // namespace voxref

@@ -1,1 +1,235 @@
+#include "options.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "error.h"
+#include "file.h"
+#include "parse.h"
+
+namespace voxref {
+
+namespace {
+
+constexpr float largest = 1e18f;  // squares of coordinates and radiances still fit a float
+
+/// A flag that reads a number into a field.
+template <class Field>
+void add_number(CLI::App& command, const std::string& flag, const std::string& value, const std::string& help,
+                double low, double high, Field& field) {
+  add_value_option(command, flag, value, help, [&field, flag, low, high](const std::string& text) {
+    field = static_cast<float>(parse_number(flag, text, low, high));
+  });
+}
+
+template <class Field>
+void add_vector(CLI::App& command, const std::string& flag, const std::string& value, const std::string& help,
+                float low, Field& field) {
+  add_value_option(command, flag, value, help,
+                   [&field, flag, low](const std::string& text) { field = parse_vector(flag, text, low, largest); });
+}
+
+/// By name first: a camera may be called "2".
+const Camera& find_camera(const Scene& scene, const std::string& wanted) {
+  for (const Camera& camera : scene.cameras)
+    if (camera.name == wanted) return camera;
+  size_t index = 0;
+  const char* end = wanted.data() + wanted.size();
+  const auto [rest, status] = std::from_chars(wanted.data(), end, index);
+  if (status == std::errc() && rest == end && index < scene.cameras.size()) return scene.cameras[index];
+  std::string names;
+  for (const Camera& camera : scene.cameras) names += (names.empty() ? "" : ", ") + camera.name;
+  throw Error("--camera", fmt::format("the scene has no camera '{}'; it has {}{}{}", wanted, scene.cameras.size(),
+                                      names.empty() ? "" : ": ", names));
+}
+
+Camera choose_camera(const ViewOptions& options, const Scene& scene) {
+  if (options.eye.has_value() != options.target.has_value())
+    throw Error(options.eye ? "--target" : "--eye", "needed too: a camera of one's own has both");
+  if (options.eye && options.camera) throw Error("--camera", "contradicts --eye and --target");
+  if (options.up && !options.eye) throw Error("--up", "needs --eye and --target");
+  if (options.eye) {
+    constexpr float usual_yfov = 45.0f;
+    return look_at(*options.eye, *options.target, options.up.value_or(glm::vec3(0.0f, 1.0f, 0.0f)),
+                   glm::radians(options.yfov.value_or(usual_yfov)));
+  }
+  Camera camera = options.camera          ? find_camera(scene, *options.camera)
+                  : scene.cameras.empty() ? framing_camera(scene)
+                                          : scene.cameras.front();
+  if (options.yfov) {
+    if (camera.orthographic) throw Error("--yfov", "the camera is orthographic");
+    camera.yfov = glm::radians(*options.yfov);
+  }
+  return camera;
+}
+
+/// An image that cannot fit into the machine's memory is refused before the system ends the program for it.
+void require_memory(const View& view) {
+  constexpr double bytes_per_pixel = 4.0 * 24;  // a renderer's image holds about 24 channels of 4 bytes
+  const double needed = bytes_per_pixel * view.width * view.height;
+  const double installed = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed > installed)
+    throw Error("--size", fmt::format("{}x{} needs {:.0f} GiB of memory, the machine has {:.0f}", view.width,
+                                      view.height, std::ldexp(needed, -30), std::ldexp(installed, -30)));
+}
+
+}  // namespace
+
+void add_value_option(CLI::App& command, const std::string& flag, const std::string& value, const std::string& help,
+                      const std::function<void(const std::string& text)>& take) {
+  command.add_option_function<std::string>(flag, take, help)->type_name(value);
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  add_value_option(command, "--threads", "N", "threads (default: all cores); the result is the same for any number",
+                   [&options](const std::string& text) {
+                     options.threads = static_cast<int>(parse_integer("--threads", text, 1, 4096));
+                   });
+  command.add_flag("--quiet", options.quiet, "neither progress nor summary");
+  command.add_flag("--json", options.json, "the result as one JSON object on stdout");
+}
+
+void add_scene_options(CLI::App& command, SceneOptions& options, bool required) {
+  command.add_option("SCENE", options.file, "glTF 2.0 file, .gltf or .glb")->required(required)->type_name("");
+  add_number(command, "--light-scale", "S", "multiplies all lights and all emission", 0, largest,
+             options.load.light_scale);
+  add_value_option(command, "--at", "T", "the animation's time in seconds (default: animations are ignored)",
+                   [&options](const std::string& text) { options.load.time = parse_number("--at", text, 0, 1e9); });
+  command.add_option("--dynamic", options.load.dynamic, "a node that counts as moving (repeatable)")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+}
+
+void add_view_options(CLI::App& command, ViewOptions& options) {
+  add_value_option(command, "--size", "WxH", "image size (default: 512 wide, the camera's aspect)",
+                   [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_value_option(command, "--camera", "NAME|INDEX", "one of the scene's cameras (default: the first)",
+                   [&options](const std::string& text) { options.camera = text; });
+  add_vector(command, "--eye", "X,Y,Z", "camera position, world units", -largest, options.eye);
+  add_vector(command, "--target", "X,Y,Z", "what the camera looks at", -largest, options.target);
+  add_vector(command, "--up", "X,Y,Z", "the image's upward direction (default: 0,1,0)", -largest, options.up);
+  add_number(command, "--yfov", "DEG", "vertical field of view (default: the camera's, or 45)", 0.01, 179,
+             options.yfov);
+  add_value_option(command, "--pixel", "center|box", "one position per pixel, as a GPU renders (default), or its mean",
+                   [&options](const std::string& text) {
+                     if (text != "center" && text != "box")
+                       throw Error("--pixel", "'" + text + "' is not center or box");
+                     options.pixel = text == "box" ? PixelSampling::box : PixelSampling::center;
+                   });
+  add_vector(command, "--background", "R,G,B", "constant radiance from outside (default: 0,0,0)", 0,
+             options.background);
+}
+
+void add_path_options(CLI::App& command, PathOptions& options) {
+  // Float counts samples exactly up to 2^24.
+  constexpr int usual_spp = 64, most_spp = 1 << 24, most_depth = 1 << 16;
+  options.spp = 0;
+  add_value_option(command, "--spp", "N", "samples per pixel (default: 64); with --noise or --time the most",
+                   [&options](const std::string& text) {
+                     options.spp = static_cast<int>(parse_integer("--spp", text, 1, most_spp));
+                   });
+  add_value_option(command, "--noise", "R", "until mean standard error / mean value is at most R",
+                   [&options](const std::string& text) { options.noise = parse_number("--noise", text, 1e-6, 1e6); });
+  add_value_option(command, "--time", "S", "for S seconds",
+                   [&options](const std::string& text) { options.seconds = parse_number("--time", text, 1e-3, 1e9); });
+  add_value_option(command, "--max-depth", "N", "0: emission only, 1: direct, 2: one bounce ... (default: unlimited)",
+                   [&options](const std::string& text) {
+                     options.max_depth = static_cast<int>(parse_integer("--max-depth", text, 0, most_depth));
+                   });
+  add_value_option(command, "--seed", "N", "of the random numbers (default: 0)", [&options](const std::string& text) {
+    options.seed = parse_integer("--seed", text, 0, std::numeric_limits<uint64_t>::max());
+  });
+  command.parse_complete_callback([&options] {
+    if (options.spp == 0 && !options.noise && !options.seconds) options.spp = usual_spp;
+  });
+}
+
+void add_settings_options(CLI::App& command, SettingsOptions& options) {
+  command.add_option("--profile", options.profile, "parameters to start from: radiometric (default)")
+      ->type_name("NAME");
+  command.add_option("--config", options.config, "parameters as JSON")->type_name("FILE");
+  command.add_option("--set", options.assignments, "one parameter (repeatable); voxref cone --help lists them")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_output_option(CLI::App& command, std::string& output, const std::string& what, const std::string& help) {
+  command.add_option("-o", output, help)->required()->type_name(what);
+}
+
+void on_run(CLI::App* command, Run& run, const std::function<int()>& work) {
+  command->allow_extras();  // so that refuse_leftovers words the error
+  command->final_callback([command, &run, work] {
+    refuse_leftovers(*command);
+    run = work;
+  });
+}
+
+void refuse_leftovers(const CLI::App& command) {
+  const std::vector<std::string> leftovers = command.remaining();
+  if (leftovers.empty()) return;
+  const std::string& first = leftovers.front();
+  const std::string help = command.get_parent() ? "voxref " + command.get_name() + " --help" : "voxref --help";
+  if (first.starts_with("-")) throw Error(first.substr(0, first.find('=')), "unknown flag; see " + help);
+  throw Error("'" + first + "'", (command.get_parent() ? "unexpected argument; see " : "unknown command; see ") + help);
+}
+
+View make_view(const ViewOptions& options, const Scene& scene) {
+  View view;
+  view.camera = choose_camera(options, scene);
+  view.pixel = options.pixel;
+  view.background = options.background;
+  if (options.size) {
+    view.width = options.size->x;
+    view.height = options.size->y;
+  } else {
+    constexpr float usual_width = 512;
+    const float height = std::clamp(std::round(usual_width / view.camera.aspect), 1.0f, 65536.0f);
+    view.width = static_cast<int>(usual_width);
+    view.height = static_cast<int>(height);
+  }
+  require_memory(view);
+  return view;
+}
+
+Settings make_settings(const SettingsOptions& options) {
+  Settings settings;
+  try {
+    settings = profile(options.profile);
+  } catch (const Error& error) {
+    throw Error("--profile", error.what());
+  }
+  if (!options.config.empty()) {
+    try {
+      apply_json(settings, nlohmann::json::parse(read_file(options.config)));
+    } catch (const nlohmann::json::parse_error& error) {
+      throw Error(options.config, fmt::format("byte {}", error.byte), "is not JSON");
+    } catch (const Error& error) {
+      const bool named = std::string_view(error.what()).starts_with(options.config);
+      throw named ? error : Error(options.config, error.what());
+    }
+  }
+  for (const std::string& assignment : options.assignments) {
+    try {
+      apply_assignment(settings, assignment);
+    } catch (const Error& error) {
+      throw Error("--set", error.what());
+    }
+  }
+  return settings;
+}
+
+void require_folder(const std::filesystem::path& folder) {
+  std::filesystem::path existing = std::filesystem::absolute(folder);
+  while (!std::filesystem::exists(existing) && existing.has_relative_path()) existing = existing.parent_path();
+  if (!std::filesystem::is_directory(existing)) throw Error(existing.string(), "is not a folder");
+  require_writable(existing / "voxref-output");
+}
+
+}  // namespace voxref

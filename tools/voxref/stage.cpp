@@ -1,1 +1,133 @@
+#include <fmt/format.h>
 
+#include "commands.h"
+#include "cone/medium.h"
+#include "image/image_file.h"
+#include "json.h"
+#include "parallel.h"
+#include "provenance.h"
+#include "summary.h"
+#include "voxel/volume_file.h"
+
+namespace voxref {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  SceneOptions scene;
+  ViewOptions view;
+  SettingsOptions settings;
+  std::string stage, from, output;
+};
+
+/// What every stage starts from; the folder for the results exists.
+struct Input {
+  const Options& options;
+  Settings settings;
+  VolumeFolder volumes;
+  Terminal& terminal;
+  std::filesystem::path output;
+};
+
+Scene stage_scene(const Input& input) {
+  if (input.options.scene.file.empty()) throw Error("SCENE", "stage " + input.options.stage + " needs one");
+  return load_scene(input.options.scene, input.terminal);
+}
+
+void run_shade(const Input& input) {
+  const Scene scene = stage_scene(input);
+  const Caster caster(scene);
+  const SurfaceGrid surfaces = input.volumes.surfaces();
+  const auto radiance = shade(scene, &caster, surfaces, input.settings.shade, input.terminal.progress());
+  VolumeFolderWriter writer(input.output, surfaces.grid);
+  writer.write_radiance(surfaces, radiance, false);
+  writer.finish();
+}
+
+void run_mipmap(const Input& input) {
+  const Grid& grid = input.volumes.grid();
+  VolumeFolderWriter writer(input.output, grid);
+  bool found = false;
+  for (const bool bounced : {false, true}) {
+    if (!input.volumes.has(bounced ? "radiance_bounce" : "radiance")) continue;
+    found = true;
+    writer.write_levels(mipmap(grid, input.volumes.base(bounced), input.settings.mipmap, input.terminal.progress()),
+                        bounced);
+  }
+  if (!found) throw Error(input.options.from, "volumes.json", "has neither radiance nor radiance_bounce to filter");
+  writer.finish();
+}
+
+void run_bounce(const Input& input) {
+  const SurfaceGrid surfaces = input.volumes.surfaces();
+  const auto direct = input.volumes.radiance(surfaces, false);
+  const Settings& settings = input.settings;
+  const BounceResult result = bounce(surfaces, direct, settings.bounce, settings.render.cone, settings.mipmap,
+                                     input.options.view.background, input.terminal.progress());
+  VolumeFolderWriter writer(input.output, surfaces.grid);
+  writer.write_radiance(surfaces, result.radiance, true);
+  writer.write_levels(result.pyramid, true);
+  writer.finish();
+}
+
+void run_gather(const Input& input) {
+  const Scene scene = stage_scene(input);
+  const View view = make_view(input.options.view, scene);
+  const Caster caster(scene);
+  const bool bounced = input.volumes.has("radiance_bounce");
+  const Medium medium = make_medium(input.volumes.pyramid(bounced));
+  ConeImage result = render_cones(scene, caster, medium, view, input.settings.render, input.terminal.progress());
+  nlohmann::json origin = provenance(scene, view);
+  origin["settings"] = to_json(input.settings);
+  origin["volumes"] = input.options.from;
+  attach(result.image, origin);
+  write_exr(input.output / "gather.exr", result.image);
+}
+
+int run_stage(const Options& options) {
+  require_folder(options.output);
+  const ThreadLimit threads(options.common.threads);
+  Terminal terminal(options.common);
+  const Input input{options, make_settings(options.settings), VolumeFolder(options.from), terminal, options.output};
+  if (options.stage == "shade") run_shade(input);
+  if (options.stage == "mipmap") run_mipmap(input);
+  if (options.stage == "bounce") run_bounce(input);
+  if (options.stage == "gather") run_gather(input);
+  terminal.say("written   " + options.output);
+  terminal.result({{"stage", options.stage}, {"from", options.from}, {"output", options.output}});
+  return exit_done;
+}
+
+}  // namespace
+
+void add_stage(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("stage", "runs one stage on volumes that somebody else made");
+  const auto options = std::make_shared<Options>();
+  command
+      ->add_option_function<std::string>(
+          "STAGE",
+          [options](const std::string& name) {
+            if (name != "shade" && name != "mipmap" && name != "bounce" && name != "gather")
+              throw Error("STAGE", "'" + name + "' is not shade, mipmap, bounce or gather");
+            options->stage = name;
+          },
+          "shade (albedo, normal, emission -> radiance), mipmap (radiance, radiance_bounce -> aniso_*, "
+          "aniso_bounce_*), bounce (radiance -> radiance_bounce, aniso_bounce_*) or gather (aniso_bounce_*, or "
+          "aniso_* where there is no bounce -> gather.exr)")
+      ->required()
+      ->type_name("");
+  add_scene_options(*command, options->scene, /*required=*/false);
+  command->add_option("--from", options->from, "folder of volumes to read")->required()->type_name("DIR");
+  add_output_option(*command, options->output, "DIR", "folder for what the stage makes");
+  add_settings_options(*command, options->settings);
+  add_view_options(*command, options->view);
+  add_common_options(*command, options->common);
+  command->footer(
+      "shade and gather need SCENE.\n\nExample:\n"
+      "  voxref cone scenes/cornell_box_point.glb -o cone.exr --volumes volumes\n"
+      "  voxref stage mipmap --from volumes -o filtered");
+  on_run(command, run, [options] { return run_stage(*options); });
+}
+
+}  // namespace voxref

@@ -1,0 +1,59 @@
+#include "provenance.h"
+
+#include <glm/trigonometric.hpp>
+
+#include "json.h"
+
+namespace voxref {
+
+namespace {
+
+std::string command_line;  // set once, by main, before anything else runs
+
+/// Quoted for a shell where it needs to be, so that the line can be run again.
+std::string quoted(const std::string& argument) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
+  std::string result = "'";
+  for (const char c : argument) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+nlohmann::json describe(const View& view) {
+  const glm::mat4& frame = view.camera.world_from_camera;
+  nlohmann::json json = {{"name", view.camera.name},
+                         {"eye", to_json(glm::vec3(frame[3]))},
+                         {"forward", to_json(-glm::vec3(frame[2]))},
+                         {"up", to_json(glm::vec3(frame[1]))},
+                         {"size", {view.width, view.height}},
+                         {"pixel", view.pixel == PixelSampling::box ? "box" : "center"},
+                         {"background", to_json(view.background)}};
+  if (view.camera.orthographic)
+    json["ymag"] = view.camera.ymag;
+  else
+    json["yfov_degrees"] = glm::degrees(view.camera.yfov);
+  return json;
+}
+
+}  // namespace
+
+std::string version() { return VOXREF_VERSION; }
+
+void set_command_line(int argc, char* argv[]) {
+  command_line = "voxref";
+  for (int i = 1; i < argc; ++i) command_line += " " + quoted(argv[i]);
+}
+
+nlohmann::json provenance(const Scene& scene, const View& view) {
+  return {{"version", version()}, {"libraries", VOXREF_LIBRARIES}, {"command_line", command_line},
+          {"scene", scene.file},  {"scene_sha256", scene.sha256},  {"camera", describe(view)}};
+}
+
+void attach(Image& image, const nlohmann::json& provenance) {
+  for (const auto& [key, value] : provenance.items())
+    image.attributes["voxref:" + key] = value.is_string()
+                                            ? value.get<std::string>()
+                                            : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace voxref

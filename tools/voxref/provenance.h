@@ -1,0 +1,23 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scene/scene.h"
+#include "settings.h"
+
+namespace voxref {
+
+/// The program's version and that of the libraries it was built with.
+std::string version();
+
+/// Remembers how the program was called.
+void set_command_line(int argc, char* argv[]);
+
+/// Where a result comes from, one object for image headers and reports: version, libraries, command line, scene and its
+/// SHA-256, size and camera.
+nlohmann::json provenance(const Scene& scene, const View& view);
+
+/// Puts every key into the header as the string attribute `voxref:KEY`.
+void attach(Image& image, const nlohmann::json& provenance);
+
+}  // namespace voxref

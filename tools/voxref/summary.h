@@ -1,0 +1,18 @@
+#pragma once
+#include "pipeline.h"
+#include "reference/path.h"
+#include "terminal.h"
+
+namespace voxref {
+
+/// Loads the scene and says what was ignored in it.
+Scene load_scene(const SceneOptions& options, Terminal& terminal);
+
+/// The result in a few aligned lines, on the terminal as it is configured.
+void say(Terminal& terminal, const PathResult& result);
+void say(Terminal& terminal, const ConeTraceResult& result);
+
+/// "1.5 GiB", "12.0 MiB", "340 bytes"
+std::string byte_count(size_t bytes);
+
+}  // namespace voxref
