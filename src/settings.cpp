@@ -224,8 +224,7 @@ json::json_pointer pointer_to(std::string key) {
 }  // namespace
 
 Settings profile(std::string_view name) {
-  if (name != "radiometric")
-    throw Error("profile", "'" + std::string(name) + "' is not available; there is: radiometric");
+  if (name != "radiometric") throw Error("profile '" + std::string(name) + "' is not available; there is: radiometric");
   return {};
 }
 

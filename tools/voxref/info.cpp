@@ -26,9 +26,10 @@ struct VolumeNeed {
   Grid grid;
   size_t voxels = 0;    ///< occupied
   size_t surfaces = 0;  ///< bytes of albedo, normal, centroid, emission
-  size_t base = 0;      ///< bytes of radiance and opacity per voxel
+  size_t radiance = 0;  ///< bytes of the voxels' radiance, direct and after the bounces
+  size_t base = 0;      ///< bytes of radiance and opacity, filtered
   size_t levels = 0;    ///< bytes of all directional levels
-  size_t total() const { return surfaces + base + levels; }
+  size_t total() const { return surfaces + radiance + base + levels; }
 };
 
 /// Bytes of a volume with those of its bricks that hold one of `texels` (moved: it is sorted and thinned out here).
@@ -46,11 +47,32 @@ size_t volume_bytes(const glm::ivec3& size, std::vector<glm::ivec3> texels) {
          size_t(table.x) * size_t(table.y) * size_t(table.z) * sizeof(uint32_t);
 }
 
+/// The scene's shape alone: where surface is does not depend on textures but for the holes of masks, and filtering them
+/// takes nearly all the time.
+Scene without_textures(const Scene& scene) {
+  Scene plain;
+  plain.positions = scene.positions;
+  plain.normals = scene.normals;
+  plain.triangles = scene.triangles;
+  plain.triangle_materials = scene.triangle_materials;
+  plain.objects = scene.objects;
+  for (const Material& material : scene.materials) {
+    plain.materials.emplace_back();
+    plain.materials.back().emission = material.emission;  // whether there is any decides about a volume
+  }
+  return plain;
+}
+
 VolumeNeed measure(const Scene& scene, int resolution, const Progress& progress) {
   const Grid grid = fit_grid(scene.bounds(), {resolution});
   const SurfaceGrid surfaces = voxelize(scene, grid, {}, progress);
-  VolumeNeed need{resolution, grid, surfaces.size(), surfaces.bytes(),
-                  volume_bytes<glm::vec4>(grid.size, surfaces.voxels)};
+  VolumeNeed need;
+  need.resolution = resolution;
+  need.grid = grid;
+  need.voxels = surfaces.size();
+  need.surfaces = surfaces.bytes();
+  need.radiance = 2 * surfaces.size() * sizeof(glm::vec3);
+  need.base = volume_bytes<glm::vec4>(grid.size, surfaces.voxels);
   std::vector<glm::ivec3> texels = surfaces.voxels;
   for (glm::ivec3 size = grid.size; size != glm::ivec3(1);) {
     size = (size + 1) / 2;
@@ -61,12 +83,16 @@ VolumeNeed measure(const Scene& scene, int resolution, const Progress& progress)
 }
 
 nlohmann::json describe(const VolumeNeed& need) {
-  return {
-      {"resolution", need.resolution},
-      {"grid", {need.grid.size.x, need.grid.size.y, need.grid.size.z}},
-      {"voxel", need.grid.voxel},
-      {"voxels_occupied", need.voxels},
-      {"bytes", {{"surfaces", need.surfaces}, {"base", need.base}, {"levels", need.levels}, {"total", need.total()}}}};
+  return {{"resolution", need.resolution},
+          {"grid", {need.grid.size.x, need.grid.size.y, need.grid.size.z}},
+          {"voxel", need.grid.voxel},
+          {"voxels_occupied", need.voxels},
+          {"bytes",
+           {{"surfaces", need.surfaces},
+            {"radiance", need.radiance},
+            {"base", need.base},
+            {"levels", need.levels},
+            {"total", need.total()}}}};
 }
 
 template <class Named>
@@ -99,9 +125,9 @@ void say(Terminal& terminal, const Scene& scene, const std::vector<VolumeNeed>& 
                                bounds.max.x, bounds.max.y, bounds.max.z));
   for (const VolumeNeed& n : needs)
     line(n.resolution == resolutions.front() ? "volumes" : "",
-         fmt::format("{:>4}: {}x{}x{}, {} voxels occupied; surfaces {}, base {}, levels {}, total {}", n.resolution,
-                     n.grid.size.x, n.grid.size.y, n.grid.size.z, n.voxels, byte_count(n.surfaces), byte_count(n.base),
-                     byte_count(n.levels), byte_count(n.total())));
+         fmt::format("{:>4}: {}x{}x{}, {} voxels occupied; surfaces {}, radiance {}, base {}, levels {}, total {}",
+                     n.resolution, n.grid.size.x, n.grid.size.y, n.grid.size.z, n.voxels, byte_count(n.surfaces),
+                     byte_count(n.radiance), byte_count(n.base), byte_count(n.levels), byte_count(n.total())));
 }
 
 int run_info(const Options& options) {
@@ -109,7 +135,8 @@ int run_info(const Options& options) {
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
   std::vector<VolumeNeed> needs;
-  for (const int resolution : resolutions) needs.push_back(measure(scene, resolution, terminal.progress()));
+  const Scene shape = without_textures(scene);
+  for (const int resolution : resolutions) needs.push_back(measure(shape, resolution, terminal.progress()));
   say(terminal, scene, needs);
 
   const Bounds bounds = scene.bounds();

@@ -20,6 +20,16 @@ int fail(std::string what) {
   return 2;
 }
 
+/// What the parser found wrong, as `FLAG: what is wrong`.
+Error explain(const CLI::ParseError& error) {
+  const std::string what = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error))  // "--spp: At Most 1 required but received 2", "... missing"
+    return {what.substr(0, what.find(':')),
+            what.find("At Most") != std::string::npos ? "given more than once" : "needs a value"};
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) return {what.substr(0, what.find(' ')), "needed, but not given"};
+  return Error(what);
+}
+
 int run(int argc, char* argv[]) {
   CLI::App program(
       "voxref: CPU reference for voxel cone tracing. Path traces, cone traces, and says how far they differ.",
@@ -39,11 +49,11 @@ int run(int argc, char* argv[]) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) throw Error(error.what());
+    if (error.get_exit_code() != 0) throw explain(error);
     return program.exit(error);  // --help and --version
   }
   refuse_leftovers(program);
-  if (!command) throw Error("command line", "names no command; see voxref --help");
+  if (!command) throw Error("command", "none given; see voxref --help");
   catch_interrupt();
   return command();
 }

@@ -160,7 +160,17 @@ void add_settings_options(CLI::App& command, SettingsOptions& options) {
 }
 
 void add_output_option(CLI::App& command, std::string& output, const std::string& what, const std::string& help) {
-  command.add_option("-o", output, help)->required()->type_name(what);
+  command
+      .add_option_function<std::string>(
+          "-o",
+          [&output, what](const std::string& text) {
+            // "-o --json" forgot the file; a file of that name is "./--json".
+            if (text.empty() || text.front() == '-') throw Error("-o", "'" + text + "' is no " + what);
+            output = text;
+          },
+          help)
+      ->required()
+      ->type_name(what);
 }
 
 void on_run(CLI::App* command, Run& run, const std::function<int()>& work) {

@@ -39,7 +39,7 @@ void say(Terminal& terminal, const ConeTraceResult& result) {
                   s.voxelize, s.shade, s.mipmap, s.bounce, s.cone_trace, s.total));
   std::string memory = "memory   ";
   for (const auto& [volume, bytes] : result.bytes) memory += fmt::format(" {} {},", volume, byte_count(bytes));
-  memory.back() = ' ';
+  memory.pop_back();  // the last comma
   terminal.say(memory);
   terminal.say(fmt::format("mean      {:.6g} {:.6g} {:.6g}", result.mean.r, result.mean.g, result.mean.b));
   if (result.image.nonfinite > 0)

@@ -43,11 +43,13 @@ class Terminal::Bar {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock || now.count() < next_.load(std::memory_order_relaxed)) return;
     next_.store(now.count() + (interactive_ ? 0.1 : 4.0), std::memory_order_relaxed);
-    if (stage != stage_) {
+    constexpr double disorder = 0.05;  // threads report slightly out of order; a step further back is a new beginning
+    if (stage != stage_ || fraction < fraction_ - disorder) {
       stage_ = stage;
       stage_begin_ = now;
       fraction_begin_ = fraction;
     }
+    fraction_ = fraction;
     draw(fraction, now);
   }
 
@@ -85,7 +87,7 @@ class Terminal::Bar {
   std::atomic<double> next_ = 1.0;  // seconds from the start: quick work shows nothing
   std::string stage_;
   Seconds stage_begin_{0};
-  double fraction_begin_ = 0;
+  double fraction_begin_ = 0, fraction_ = 0;
   bool drawn_ = false;
 };
 
