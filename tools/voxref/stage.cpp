@@ -8,6 +8,7 @@
 #include "provenance.h"
 #include "summary.h"
 #include "voxel/volume_file.h"
+#include "voxel/volume_writer.h"
 
 namespace voxref {
 
