@@ -110,6 +110,10 @@ void say(Terminal& terminal, const SceneBench& bench) {
                   s.voxelize, s.shade, s.mipmap, s.bounce, s.cone_trace));
 }
 
+void say_machine(Terminal& terminal, const std::string& cpu, int rounds) {
+  terminal.say(fmt::format("{}, {} threads; medians of {} rounds (least to greatest)", cpu, thread_count(), rounds));
+}
+
 int run_bench(const Options& options) {
   const Settings settings = make_settings(options.settings);
   const ThreadLimit threads(options.common.threads);
@@ -120,10 +124,9 @@ int run_bench(const Options& options) {
                            {"threads", thread_count()},
                            {"rounds", options.rounds},
                            {"scenes", nlohmann::json::array()}};
-  terminal.say(
-      fmt::format("{}, {} threads; medians of {} rounds (least to greatest)", cpu, thread_count(), options.rounds));
   for (const std::string& file : options.scenes.empty() ? default_scenes() : options.scenes) {
     const SceneBench bench = bench_scene(file, options, settings, terminal);
+    if (result["scenes"].empty()) say_machine(terminal, cpu, options.rounds);
     say(terminal, bench);
     result["scenes"].push_back({{"scene", file},
                                 {"path_million_rays_per_second", to_json(bench.path)},

@@ -22,7 +22,7 @@ struct Options {
   std::string stage, from, output;
 };
 
-/// What every stage starts from; the folder for the results exists.
+/// What every stage starts from.
 struct Input {
   const Options& options;
   Settings settings;
@@ -83,6 +83,7 @@ void run_gather(const Input& input) {
   origin["settings"] = to_json(input.settings);
   origin["volumes"] = input.options.from;
   attach(result.image, origin);
+  std::filesystem::create_directories(input.output);
   write_exr(input.output / "gather.exr", result.image);
 }
 
