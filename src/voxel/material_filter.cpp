@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "scene/surface.h"
 
@@ -10,7 +11,8 @@ namespace voxref {
 
 namespace {
 
-constexpr double golden_fraction = 0.6180339887498949;  // (sqrt(5) - 1) / 2: its multiples fill [0,1) most evenly
+/// Enough for the border between two texels to be seen where it is.
+constexpr double points_per_texel = 4.0;
 
 /// The share of cosine-weighted light that leaves again, whatever the directions: what a voxel, which forgets
 /// directions, scatters as if it were Lambertian. The diffuse base as the layer over it dims it, plus the specular
@@ -23,28 +25,36 @@ FilteredMaterial at_point(const MaterialPoint& point) {
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Area in barycentric coordinates; the whole triangle has 1/2.
-double barycentric_area(const ClipPolygon& piece) {
-  double sum = 0.0;
-  for (int i = 2; i < piece.size(); ++i) sum += cross(piece[i - 1].uv - piece[0].uv, piece[i].uv - piece[0].uv);
-  return 0.5 * std::abs(sum);
-}
-
-/// Point number `i` of `count` spread evenly over a piece. Barycentric coordinates map areas in proportion, so the
-/// piece can be sampled there: its fan of triangles by cumulative area, each by the usual square root.
-glm::dvec2 spread(const ClipPolygon& piece, double area, int i, int count) {
-  double rest = (i + 0.5) / count * area;
-  int corner = 2;
-  double part = 0.0;
-  for (; corner < piece.size(); ++corner) {
-    part = 0.5 * std::abs(cross(piece[corner - 1].uv - piece[0].uv, piece[corner].uv - piece[0].uv));
-    if (rest <= part || corner + 1 == piece.size()) break;
-    rest -= part;
+/// Calls visit(uv) for the points of a square lattice in the triangle's plane that lie in a piece. The lattice is
+/// anchored in the grid and not in the piece: however a surface is cut, it is looked up at the same points. It is
+/// turned against the plane's natural axes so that it does not beat with textures that follow them.
+/// @param front unit, of the triangle @param density points per voxel face
+template <class Visit>
+void for_each_lattice_point(const ClipPolygon& piece, const glm::dvec3& front, double density, Visit&& visit) {
+  constexpr double slope = 0.41421356237309503;  // tan(pi / 8): half-way between the axes and the diagonals
+  const glm::dvec3 helper = std::abs(front.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const glm::dvec3 natural = glm::normalize(glm::cross(front, helper));
+  const glm::dvec3 along = glm::normalize(natural + slope * glm::cross(front, natural));
+  const glm::dvec3 across = glm::cross(front, along);
+  const double scale = std::sqrt(density);
+  const auto on_lattice = [&](const ClipVertex& vertex) {
+    return scale * glm::dvec2(glm::dot(vertex.position, along), glm::dot(vertex.position, across));
+  };
+  const glm::dvec2 a = on_lattice(piece[0]);
+  for (int i = 2; i < piece.size(); ++i) {
+    const glm::dvec2 ab = on_lattice(piece[i - 1]) - a, ac = on_lattice(piece[i]) - a;
+    const double twice_area = cross(ab, ac);
+    if (!(twice_area > 0.0)) continue;
+    const glm::dvec2 low = glm::ceil(a + glm::min(glm::dvec2(0.0), glm::min(ab, ac)));
+    const glm::dvec2 high = a + glm::max(glm::dvec2(0.0), glm::max(ab, ac));
+    for (double y = low.y; y <= high.y; ++y)
+      for (double x = low.x; x <= high.x; ++x) {
+        const glm::dvec2 point = glm::dvec2(x, y) - a;
+        const double b = cross(point, ac) / twice_area, c = cross(ab, point) / twice_area;
+        if (b >= 0.0 && c >= 0.0 && b + c < 1.0)
+          visit((1.0 - b - c) * piece[0].uv + b * piece[i - 1].uv + c * piece[i].uv);
+      }
   }
-  const double across = part > 0.0 ? std::sqrt(std::clamp(rest / part, 0.0, 1.0)) : 0.0;
-  const double along = std::fmod((i + 0.5) * golden_fraction, 1.0);
-  const glm::dvec2 edge = glm::mix(piece[corner - 1].uv, piece[corner].uv, along);
-  return glm::mix(piece[0].uv, edge, across);
 }
 
 double texels_per_unit_area(const Scene& scene, const TextureBinding& binding) {
@@ -76,33 +86,36 @@ MaterialFilter::MaterialFilter(const Scene& scene) : scene_(scene), entries_(sce
   }
 }
 
-int MaterialFilter::sample_count(const Entry& entry, uint32_t triangle, const ClipPolygon& piece, double area) const {
+double MaterialFilter::texels_per_voxel(const Entry& entry, uint32_t triangle, double area) const {
   const glm::uvec3& corners = scene_.triangles[triangle];
   double texels = 0.0;
   for (int set = 0; set < 2; ++set) {
     if (entry.texels[set] == 0.0) continue;
     const std::vector<glm::vec2>& uv = scene_.uv[set];
     const glm::dvec2 a(uv[corners.x]), b(uv[corners.y]), c(uv[corners.z]);
-    texels = std::max(texels, std::abs(cross(b - a, c - a)) * barycentric_area(piece) * entry.texels[set]);
+    texels = std::max(texels, 0.5 * std::abs(cross(b - a, c - a)) * entry.texels[set]);
   }
-  static const double S = getenv("S") ? atof(getenv("S")) : 32;
-  return int(std::max(1.0, std::ceil(std::min(texels, S * area))));
+  return texels / area;
 }
 
-FilteredMaterial MaterialFilter::operator()(uint32_t triangle, const ClipPolygon& piece, double area) const {
-  const Entry& entry = entries_[scene_.triangle_materials[triangle]];
+FilteredMaterial MaterialFilter::operator()(const TrianglePlane& plane, const ClipPolygon& piece,
+                                            const glm::dvec2& centroid) const {
+  const Entry& entry = entries_[scene_.triangle_materials[plane.triangle]];
   if (!entry.varies) return entry.constant;
 
-  const int count = sample_count(entry, triangle, piece, area);
-  const double within = barycentric_area(piece);
   FilteredMaterial mean{0.0};
-  for (int i = 0; i < count; ++i) {
-    const FilteredMaterial sample =
-        at_point(material_point(scene_, triangle, glm::vec2(spread(piece, within, i, count))));
+  int count = 0;
+  const auto add = [&](const glm::dvec2& uv) {
+    const FilteredMaterial sample = at_point(material_point(scene_, plane.triangle, glm::vec2(uv)));
     mean.coverage += sample.coverage;
     mean.albedo += sample.coverage * sample.albedo;
     mean.emission += sample.coverage * sample.emission;
-  }
+    ++count;
+  };
+  const double density =
+      std::min(points_per_texel * texels_per_voxel(entry, plane.triangle, plane.area), max_points_per_voxel);
+  if (density > 1.0) for_each_lattice_point(piece, plane.front, density, add);
+  if (count == 0) add(centroid);
   if (mean.coverage > 0.0) {
     mean.albedo /= mean.coverage;
     mean.emission /= mean.coverage;

@@ -14,17 +14,26 @@ struct FilteredMaterial {
   glm::dvec3 emission{0.0};  ///< over what is covered, radiance, W/(sr m^2)
 };
 
+/// A triangle, in voxels.
+struct TrianglePlane {
+  uint32_t triangle = 0;
+  glm::dvec3 front{0.0};  ///< unit, the triangle's normal
+  double area = 0.0;      ///< of the whole triangle, in voxel faces
+};
+
 /// Filters materials to the footprint of a piece. A material without textures on a scene without vertex colours is
-/// evaluated once; the others at points spread evenly over the piece, one per texel of the finest texture, but no more
-/// than samples_per_voxel for each voxel face's worth of area.
+/// evaluated once; the others at points spread evenly over the piece, four per texel of the finest texture, but no more
+/// than max_points_per_voxel for each voxel face's worth of area, or at the centroid where none falls into the piece.
 class MaterialFilter {
  public:
   /// Keeps a reference to the scene.
   explicit MaterialFilter(const Scene& scene);
-  /// @param area of the piece, in voxel faces
-  FilteredMaterial operator()(uint32_t triangle, const ClipPolygon& piece, double area) const;
+  /// @param centroid of the piece, in barycentric coordinates
+  FilteredMaterial operator()(const TrianglePlane& plane, const ClipPolygon& piece, const glm::dvec2& centroid) const;
 
-  static constexpr int samples_per_voxel = 32;
+  /// Measured on Sponza at 64 voxels against 2048 points: 64 leave a root mean square of 0.014 in a voxel's albedo, 32
+  /// leave 0.018; filtering is then most of the time that voxelizing Sponza at 256 takes.
+  static constexpr double max_points_per_voxel = 64.0;
 
  private:
   struct Entry {
@@ -32,7 +41,8 @@ class MaterialFilter {
     FilteredMaterial constant;      ///< where it does not
     double texels[2] = {0.0, 0.0};  ///< per unit area of each texture coordinate set
   };
-  int sample_count(const Entry& entry, uint32_t triangle, const ClipPolygon& piece, double area) const;
+  /// Texels of the finest texture in a voxel face's worth of area. @param area of the triangle, in voxel faces
+  double texels_per_voxel(const Entry& entry, uint32_t triangle, double area) const;
 
   const Scene& scene_;
   std::vector<Entry> entries_;  ///< one per material

@@ -108,29 +108,31 @@ class BrickVoxelizer {
  private:
   void add_triangle(uint32_t triangle, const glm::ivec3& first) {
     const ClipPolygon whole = triangles_(triangle);
-    const glm::dvec3 front = glm::normalize(twice_vector_area(whole));
+    const glm::dvec3 twice_area = twice_vector_area(whole);
+    const double length = glm::length(twice_area);
+    const TrianglePlane plane{triangle, twice_area / length, 0.5 * length};
     const glm::ivec3 last = glm::min(first + Bricks::side, triangles_.grid().size);
     const ClipPolygon inside = clip_to_box(whole, glm::dvec3(first), glm::dvec3(last));
     if (inside.empty()) return;
     for_each_cell(inside, 1, first, last, [&](const glm::ivec3& voxel, const ClipPolygon& piece, double share) {
-      add_piece(triangle, front, Bricks::offset(voxel), piece, share);
+      add_piece(plane, Bricks::offset(voxel), piece, share);
     });
   }
 
-  void add_piece(uint32_t triangle, const glm::dvec3& front, size_t voxel, const ClipPolygon& piece, double share) {
-    const double whole_area = 0.5 * glm::dot(twice_vector_area(piece), front);
+  void add_piece(const TrianglePlane& plane, size_t voxel, const ClipPolygon& piece, double share) {
+    const double whole_area = 0.5 * glm::dot(twice_vector_area(piece), plane.front);
     if (!(whole_area > 0.0)) return;
-    const FilteredMaterial material = filter_(triangle, piece, whole_area);
+    const ClipVertex centroid = centroid_of(piece, plane.front);
+    const FilteredMaterial material = filter_(plane, piece, centroid.uv);
     const double area = share * whole_area * material.coverage;
     if (!(area > 0.0)) return;
-    const ClipVertex centroid = centroid_of(piece, front);
     Sums& sums = sums_[voxel];
     sums.area += area;
     sums.albedo += area * material.albedo;
     sums.emission += area * material.emission;
-    sums.normal += area * shading_normal(scene_, triangle, centroid.uv, front);
+    sums.normal += area * shading_normal(scene_, plane.triangle, centroid.uv, plane.front);
     sums.centroid += area * centroid.position;
-    if (opacity_ == VoxelOpacity::coverage) facets_.push_back({voxel, area * front});
+    if (opacity_ == VoxelOpacity::coverage) facets_.push_back({voxel, area * plane.front});
   }
 
   Voxel finish(const glm::ivec3& index, size_t voxel) const {
