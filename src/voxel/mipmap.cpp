@@ -1,6 +1,5 @@
 #include "voxel/mipmap.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -33,12 +32,9 @@ const Texel& in_column(const Block<Texel>& block, int axis, int column, int alon
 const glm::vec4& seen(const glm::vec4& base, size_t) { return base; }
 const glm::vec4& seen(const DirectionalTexel& texel, size_t face) { return texel[face]; }
 
-/// Rounding of the sum of columns can reach one unit in the last place above full opacity.
-glm::vec4 opaque_at_most(glm::vec4 texel) {
-  texel.a = std::min(texel.a, 1.0f);
-  return texel;
-}
-
+// Rounding never lifts opacity above 1. With the sum of the columns before at most c, a whole number, the next is at
+// most round(round(c + f) + round(1 - f)) where f is the front's opacity; the three roundings together miss c + 1 by at
+// most half a unit in its last place (both addends are multiples of 2^-24, and ties go to the even c + 1).
 template <class Texel>
 DirectionalTexel filter_anisotropic(const Block<Texel>& block) {
   DirectionalTexel result;
@@ -52,7 +48,7 @@ DirectionalTexel filter_anisotropic(const Block<Texel>& block) {
       sum += near;
       sum += far * (1.0f - near.a);
     }
-    result[face] = opaque_at_most(0.25f * sum);
+    result[face] = 0.25f * sum;
   }
   return result;
 }
@@ -64,7 +60,7 @@ DirectionalTexel filter_isotropic(const Block<Texel>& block) {
     for (const auto& row : plane)
       for (const Texel& texel : row) sum += seen(texel, 0);
   DirectionalTexel result;
-  result.fill(opaque_at_most(0.125f * sum));
+  result.fill(0.125f * sum);
   return result;
 }
 
