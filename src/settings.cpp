@@ -99,7 +99,7 @@ Parameter bounce_count() {
 }
 
 /// A parameter of the specification of which this pipeline has one value.
-Parameter fixed(std::string key, json only, std::string meaning) {
+Parameter fixed(const std::string& key, const json& only, std::string meaning) {
   const std::string range = "only " + only.dump();
   return {key, range, std::move(meaning), [only](const Settings&) { return only; },
           [=](Settings&, const json& value) {

@@ -135,6 +135,7 @@ int run_info(const Options& options) {
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
   std::vector<VolumeNeed> needs;
+  needs.reserve(resolutions.size());
   const Scene shape = without_textures(scene);
   for (const int resolution : resolutions) needs.push_back(measure(shape, resolution, terminal.progress()));
   say(terminal, scene, needs);
