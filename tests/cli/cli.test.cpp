@@ -180,7 +180,7 @@ TEST_CASE("an output that cannot be written is refused before any work", "[cli]"
   check_refused(place, "stage mipmap --from folder -o file", "file");
 }
 
-TEST_CASE("--json prints one object with the keys that scripts read", "[cli]") {
+TEST_CASE("with --json a command prints one object with the keys that scripts read", "[cli]") {
   const Workplace place;
   const json info = place.run_json("info point.glb");
   CHECK(info["triangles"] > 0);
@@ -225,7 +225,7 @@ TEST_CASE("an error beyond the budget ends check with 1, one within it with 0", 
   CHECK(place.run(command + "--budget 1e-9").status == 1);
 }
 
-TEST_CASE("--quiet says nothing, and without it the summary goes to stdout", "[cli]") {
+TEST_CASE("with --quiet a command says nothing, and without it the summary goes to stdout", "[cli]") {
   const Workplace place;
   const Outcome quiet = place.run("path point.glb -o out.exr --spp 1 --quiet" + small_view);
   CHECK(quiet.status == 0);

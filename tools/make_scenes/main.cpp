@@ -31,7 +31,7 @@ void write(const std::filesystem::path& file, const Scene& scene, const std::str
 }
 
 int run(int argc, char* argv[]) {
-  CLI::App app("Writes the project's own scenes as .glb files.\nExample: make_scenes /tmp thin_wall --thickness 0.005",
+  CLI::App app("Writes the project's own scenes as .glb files.\nExample: make_scenes out thin_wall --thickness 0.005",
                "make_scenes");
   std::string folder;
   std::vector<std::string> names;
