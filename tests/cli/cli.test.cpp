@@ -180,6 +180,26 @@ TEST_CASE("an output that cannot be written is refused before any work", "[cli]"
   check_refused(place, "stage mipmap --from folder -o file", "file");
 }
 
+TEST_CASE("a sun from the command line lights a scene of its own or beside the file's lights", "[cli]") {
+  const Workplace place;
+  voxref::write_glb(place.path("plane.glb"), voxref::point_light_over_plane(), "for the tests");
+  const std::string view =
+      " --eye 0,2,0 --target 0,0,0 --up 0,0,-1 --yfov 20 --size 6x4 --spp 4 --max-depth 1 -o x.exr ";
+  // Albedo 0.5 under irradiance 3 cos 60 degrees and twice that; the point light's part is the same in both.
+  const json alone = place.run_json("path plane.glb" + view);
+  const json one = place.run_json("path plane.glb --sun 0,-1,1.7320508,3,3,3" + view);
+  const json two = place.run_json("path plane.glb --sun 0,-1,1.7320508,3,3,3 --sun 0,-2,3.4641016,3,3,3" + view);
+  for (size_t c = 0; c < 3; ++c) {
+    const double added = 0.5 / 3.14159265 * 3.0 * 0.5;
+    // Float rounding of directions and radiance; between unoccluded lights of one colour the choice has no noise.
+    CHECK(double(one["mean"][c]) - double(alone["mean"][c]) == Approx(added).epsilon(1e-4));
+    CHECK(double(two["mean"][c]) - double(alone["mean"][c]) == Approx(2.0 * added).epsilon(1e-4));
+  }
+  check_refused(place, "path plane.glb --sun 0,0,0,1,1,1 -o y.exr", "--sun");
+  check_refused(place, "path plane.glb --sun 0,-1,0 -o y.exr", "--sun");
+  check_refused(place, "path plane.glb --sun 0,-1,0,1,1,-1 -o y.exr", "--sun");
+}
+
 TEST_CASE("with --json a command prints one object with the keys that scripts read", "[cli]") {
   const Workplace place;
   const json info = place.run_json("info point.glb");

@@ -68,7 +68,7 @@ void bench_rays(SceneBench& bench, const Scene& scene, const Caster& caster, con
 }
 
 SceneBench bench_scene(const std::string& file, const Options& options, const Settings& settings, Terminal& terminal) {
-  const Scene scene = load_scene({file, {}}, terminal);
+  const Scene scene = load_scene({file, {}, {}}, terminal);
   const View view = make_view(options.view, scene);
   const Caster caster(scene);
   // The progress is for Ctrl-C alone: drawing it would be measured too.

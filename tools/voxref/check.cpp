@@ -23,6 +23,7 @@ struct Options {
   SettingsOptions settings;
   std::optional<double> budget;
   std::string output;
+  ConeTraceOutputs outputs;
 };
 
 void say_verdict(Terminal& terminal, const CheckReport& report) {
@@ -45,7 +46,7 @@ int run_check(const Options& options) {
   const View view = make_view(options.view, scene);
   const Caster caster(scene);
   // The cone tracer first: it is quick, and refuses what it cannot do before the path tracer has worked for minutes.
-  ConeTraceResult cone = cone_trace(scene, caster, view, settings, {}, terminal.progress());
+  ConeTraceResult cone = cone_trace(scene, caster, view, settings, options.outputs, terminal.progress());
   PathResult path = path_trace(scene, caster, view, options.path, terminal.progress());
   if (path.interrupted) throw Interrupted();  // a comparison with fewer samples than asked for is not the one asked for
 
@@ -87,6 +88,7 @@ void add_check(CLI::App& program, Run& run) {
   add_value_option(*command, "--budget", "R", "exit with 1 when the relative error exceeds R (0.2 = 20 %)",
                    [options](const std::string& text) { options->budget = parse_number("--budget", text, 0, 1e6); });
   add_settings_options(*command, options->settings);
+  add_volumes_option(*command, options->outputs);
   add_path_options(*command, options->path);
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);

@@ -18,23 +18,19 @@ struct Options {
   SceneOptions scene;
   ViewOptions view;
   SettingsOptions settings;
-  std::string output, volumes;
+  std::string output;
+  ConeTraceOutputs outputs;
 };
 
 int run_cone(const Options& options) {
   const Settings settings = make_settings(options.settings);
   require_writable(options.output);
-  ConeTraceOutputs outputs;
-  if (!options.volumes.empty()) {
-    require_folder(options.volumes);
-    outputs.volumes = options.volumes;
-  }
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
   const View view = make_view(options.view, scene);
   const Caster caster(scene);
-  ConeTraceResult result = cone_trace(scene, caster, view, settings, outputs, terminal.progress());
+  ConeTraceResult result = cone_trace(scene, caster, view, settings, options.outputs, terminal.progress());
 
   nlohmann::json origin = provenance(scene, view);
   origin["settings"] = to_json(settings);
@@ -43,7 +39,7 @@ int run_cone(const Options& options) {
 
   say(terminal, result);
   terminal.say("written   " + options.output);
-  if (outputs.volumes) terminal.say("volumes   " + options.volumes);
+  if (options.outputs.volumes) terminal.say("volumes   " + options.outputs.volumes->string());
   terminal.result(to_json(result));
   return exit_done;
 }
@@ -63,7 +59,7 @@ void add_cone(CLI::App& program, Run& run) {
   add_scene_options(*command, options->scene);
   add_output_option(*command, options->output, "FILE", "OpenEXR file to write");
   add_settings_options(*command, options->settings);
-  command->add_option("--volumes", options->volumes, "also writes every volume into this folder")->type_name("DIR");
+  add_volumes_option(*command, options->outputs);
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
   command->footer(parameter_table() +

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,20 @@ void add_number(CLI::App& command, const std::string& flag, const std::string& v
   add_value_option(command, flag, value, help, [&field, flag, low, high](const std::string& text) {
     field = static_cast<float>(parse_number(flag, text, low, high));
   });
+}
+
+Light parse_sun(const std::string& flag, const std::string& text) {
+  size_t comma = 0;
+  for (int i = 0; i < 3 && comma != std::string::npos; ++i) comma = text.find(',', comma + (i > 0));
+  if (comma == std::string::npos) throw Error(flag, "'" + text + "' is not six numbers dx,dy,dz,r,g,b");
+  const glm::vec3 direction = parse_vector(flag, text.substr(0, comma), -largest, largest);
+  if (!(glm::length(direction) > 0.0f)) throw Error(flag, "'" + text + "' has no direction");
+  Light sun;
+  sun.name = "sun";
+  sun.type = LightType::directional;
+  sun.direction = glm::normalize(direction);
+  sun.intensity = parse_vector(flag, text.substr(comma + 1), 0.0f, largest);
+  return sun;
 }
 
 template <class Field>
@@ -104,6 +119,15 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool required) 
   command.add_option("--dynamic", options.load.dynamic, "a node that counts as moving (repeatable)")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--sun",
+          [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) options.suns.push_back(parse_sun("--sun", text));
+          },
+          "adds a directional light: the way it travels, and its irradiance on a facing surface, W/m^2 (repeatable)")
+      ->type_name("DX,DY,DZ,R,G,B")
+      ->allow_extra_args(false);
 }
 
 void add_view_options(CLI::App& command, ViewOptions& options) {
@@ -157,6 +181,14 @@ void add_settings_options(CLI::App& command, SettingsOptions& options) {
   command.add_option("--set", options.assignments, "one parameter (repeatable); voxref cone --help lists them")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+void add_volumes_option(CLI::App& command, ConeTraceOutputs& outputs) {
+  add_value_option(command, "--volumes", "DIR", "also writes every volume into this folder",
+                   [&outputs](const std::string& text) {
+                     require_folder(text);
+                     outputs.volumes = text;
+                   });
 }
 
 void add_output_option(CLI::App& command, std::string& output, const std::string& what, const std::string& help) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline.h"
 #include "reference/path.h"
 #include "scene/camera.h"
 #include "scene/gltf.h"
@@ -26,6 +27,7 @@ struct CommonOptions {
 struct SceneOptions {
   std::string file;
   LoadOptions load;
+  std::vector<Light> suns;  ///< directional lights beside the file's own, before the light scale
 };
 
 struct ViewOptions {
@@ -49,6 +51,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool required =
 void add_view_options(CLI::App& command, ViewOptions& options);
 void add_path_options(CLI::App& command, PathOptions& options);
 void add_settings_options(CLI::App& command, SettingsOptions& options);
+/// --volumes, a folder that is checked at once.
+void add_volumes_option(CLI::App& command, ConeTraceOutputs& outputs);
 /// The required -o. @param what "FILE" or "DIR"
 void add_output_option(CLI::App& command, std::string& output, const std::string& what, const std::string& help);
 /// A flag whose value `take` reads from the text that follows it.

@@ -6,6 +6,10 @@ namespace voxref {
 
 Scene load_scene(const SceneOptions& options, Terminal& terminal) {
   Scene scene = load_gltf(options.file, options.load);
+  for (Light sun : options.suns) {
+    sun.intensity *= options.load.light_scale;
+    scene.lights.push_back(sun);
+  }
   for (const std::string& warning : scene.warnings) terminal.warn("voxref: warning: " + warning);
   return scene;
 }
