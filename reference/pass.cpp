@@ -66,8 +66,7 @@ std::optional<PassCounts> PassRenderer::render(const Pass& pass, const Progress&
   std::vector<PassCounts> counts(columns_ * rows_);
   std::atomic<size_t> finished = 0;
   parallel_for(counts.size(), 1, [&](size_t tile, size_t) {
-    if (progress.cancelled()) return;
-    counts[tile] = render_tile(tile, pass);
+    if (!render_tile(tile, pass, progress, counts[tile])) return;
     report(static_cast<double>(++finished) / static_cast<double>(counts.size()));
   });
   if (finished != counts.size()) return std::nullopt;
@@ -76,15 +75,16 @@ std::optional<PassCounts> PassRenderer::render(const Pass& pass, const Progress&
   return sum;
 }
 
-PassCounts PassRenderer::render_tile(size_t tile, const Pass& pass) {
+bool PassRenderer::render_tile(size_t tile, const Pass& pass, const Progress& progress, PassCounts& counts) {
   const int left = static_cast<int>(tile % columns_) * tile_side;
   const int top = static_cast<int>(tile / columns_) * tile_side;
-  PassCounts counts;
   for (int y = top; y < std::min(top + tile_side, view_.height); ++y)
-    for (int x = left; x < std::min(left + tile_side, view_.width); ++x)
+    for (int x = left; x < std::min(left + tile_side, view_.width); ++x) {
+      if (progress.cancelled()) return false;
       batches_[static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x)] =
           render_pixel(x, y, pass, counts);
-  return counts;
+    }
+  return true;
 }
 
 PixelBatch PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts& counts) const {

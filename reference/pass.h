@@ -62,7 +62,8 @@ class PassRenderer {
   std::span<const PixelBatch> batches() const { return batches_; }
 
  private:
-  PassCounts render_tile(size_t tile, const Pass& pass);
+  /// False when it was cancelled: asked at every pixel, because a tile of many samples may take a minute.
+  bool render_tile(size_t tile, const Pass& pass, const Progress& progress, PassCounts& counts);
   PixelBatch render_pixel(int x, int y, const Pass& pass, PassCounts& counts) const;
 
   const View& view_;

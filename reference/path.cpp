@@ -15,18 +15,32 @@ namespace {
 
 // Each pass adds one randomization to every pixel. More samples per pass are better stratified, and so less noisy; more
 // passes tell the error better: with R of them the standard error is itself known to 1 / sqrt(2 (R - 1)). From 16
-// passes on, 18 %, it serves; so a known number of samples is cut in 16 to 31 passes of a power of two, at which Sobol
-// points are best balanced, and a shorter pass where that leaves a rest.
+// passes on, 18 %, it serves; so a known number of samples is cut in at least 16 passes of a power of two, at which
+// Sobol points are best balanced, and a shorter pass where that leaves a rest.
 constexpr int least_passes = 16;
 
-// Where the number of samples is open (a noise or a time to reach) it doubles after each 16 passes from the 32nd on:
-// passes stay short against the whole, and the scatter is always that of about 48 equal ones.
-constexpr int most_doublings = 20;
+// A render that is stopped keeps its finished passes, so they must not last: about 4 million samples, which take
+// seconds, but at least 16 per pixel, below which stratification has little effect, and at most 1024, which take
+// milliseconds: only between two pixels is a request to stop heard.
+constexpr size_t samples_of_long_pass = size_t{1} << 22;
+constexpr size_t fewest_at_most = 16, most_at_most = 1024;
 
-int samples_of_pass(int pass, const PathOptions& options) {
-  if (!options.noise && !options.seconds)
-    return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(1, options.spp / least_passes))));
-  return 1 << std::clamp(pass / least_passes - 1, 0, most_doublings);
+// Where the number of samples is open (a noise or a time to reach) it doubles after each 16 passes from the 32nd on, up
+// to the longest pass: passes stay short against the whole, and the scatter is that of at least 48 equal ones.
+constexpr int most_doublings = 10;
+
+/// @returns a power of two
+int most_samples_of_pass(const View& view) {
+  const size_t pixels = static_cast<size_t>(view.width) * static_cast<size_t>(view.height);
+  return static_cast<int>(std::bit_floor(std::clamp(samples_of_long_pass / pixels, fewest_at_most, most_at_most)));
+}
+
+int samples_of_pass(int pass, const PathOptions& options, int most) {
+  if (!options.noise && !options.seconds) {
+    const auto equal = static_cast<unsigned>(std::max(1, options.spp / least_passes));
+    return std::min(static_cast<int>(std::bit_floor(equal)), most);
+  }
+  return std::min(1 << std::clamp(pass / least_passes - 1, 0, most_doublings), most);
 }
 
 void check(const PathOptions& options, const View& view) {
@@ -49,9 +63,9 @@ struct Standing {
 
 int most_samples(const PathOptions& options) { return options.spp > 0 ? options.spp : std::numeric_limits<int>::max(); }
 
-/// Samples of the next pass; 0 when the goal is reached. There is always a first pass.
-int next_samples(const PathOptions& options, const Standing& now) {
-  const int samples = std::min(samples_of_pass(now.passes, options), most_samples(options) - now.samples);
+/// Samples of the next pass, at most `most`; 0 when the goal is reached. There is always a first pass.
+int next_samples(const PathOptions& options, const Standing& now, int most) {
+  const int samples = std::min(samples_of_pass(now.passes, options, most), most_samples(options) - now.samples);
   if (now.passes == 0) return samples;
   // The noise is a mean over the image: what a single pixel happened to find has next to no say in when it stops, and
   // so stopping does not bias the pixel.
@@ -92,7 +106,7 @@ PathResult path_trace(const Scene& scene, const Caster& caster, const View& view
   const Clock::time_point start = Clock::now();
   const auto seconds = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
 
-  while (const int samples = next_samples(options, now)) {
+  while (const int samples = next_samples(options, now, most_samples_of_pass(view))) {
     const std::optional<PassCounts> pass = renderer.render(
         {now.passes, samples, now.samples}, progress,
         [&](double fraction) { progress("path tracing", finished(options, now, fraction * samples, seconds())); });

@@ -1,6 +1,8 @@
 #include "cone/bounce.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>
@@ -15,6 +17,7 @@ namespace {
 
 constexpr int most_bounces = 1000;         // an albedo of 0.99 needs 460 to come within 1 %
 constexpr double negligible_share = 0.01;  // of the total: what one more bounce may leave out
+constexpr int usual_bounces = 6;           // until the first tells more: an albedo of about a half
 constexpr size_t grain = 256;              // voxels per task, some milliseconds
 
 /// Irradiance at one voxel from the radiance in `medium`.
@@ -34,10 +37,36 @@ struct Sums {
   double change = 0.0;  ///< of what it has more than the old one
 };
 
+/// How far the bounces are, as one fraction. Each bounce takes an equal share of what is left by the estimate of its
+/// time: the estimate may change, the fraction never falls.
+class BounceProgress {
+ public:
+  explicit BounceProgress(const Progress& progress) : progress_(progress) {}
+
+  /// @param left how many there will be, this one included
+  void begin(int left) {
+    begin_ += share_;
+    share_ = (1.0 - begin_) / left;
+  }
+  void operator()(double fraction_of_this) const { progress_("bounce", begin_ + share_ * fraction_of_this); }
+  void check() const { progress_.check(); }
+
+ private:
+  const Progress& progress_;
+  double begin_ = 0.0, share_ = 0.0;
+};
+
+/// How many further bounces bring the addition, which shrinks by the factor `gain` each time, down to a negligible one.
+int bounces_left(const Sums& sums, double gain) {
+  if (!(gain > 0.0) || gain >= 1.0) return 1;
+  const double left = std::ceil(std::log(negligible_share * sums.total / sums.change) / std::log(gain));
+  return static_cast<int>(std::clamp(left, 1.0, double(most_bounces)));
+}
+
 /// One bounce: replaces `radiance` by direct + albedo/pi E(medium).
 Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, const Medium& medium,
                    const std::vector<Cone>& cones, const ConeOptions& options, const glm::vec3& background,
-                   std::vector<glm::vec3>& radiance, const Progress& progress) {
+                   std::vector<glm::vec3>& radiance, const BounceProgress& progress) {
   std::vector<Sums> partial((surfaces.size() + grain - 1) / grain);  // merged by index: the same bits for any threads
   std::atomic<size_t> done{0};
   parallel_for(surfaces.size(), grain, [&](size_t begin, size_t end) {
@@ -50,7 +79,7 @@ Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direc
       sums.total += luminance(radiance[i]);
       sums.change += double(luminance(radiance[i])) - luminance(old);
     }
-    progress("bounce", double(done += end - begin) / double(surfaces.size()));
+    progress(double(done += end - begin) / double(surfaces.size()));
   });
   Sums sums;
   for (const Sums& p : partial) {
@@ -77,12 +106,16 @@ BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> dire
   result.radiance.assign(direct.begin(), direct.end());
   result.pyramid = std::move(filtered);
 
+  BounceProgress so_far(progress);
+  const Progress silent{{}, progress.cancel};  // filtering is a part of the bounce
   double previous = 0.0;
+  int left = options.count.value_or(usual_bounces);
   for (const int most = options.count.value_or(most_bounces); result.bounces < most;) {
+    so_far.begin(left);
     Medium medium = make_medium(std::move(result.pyramid));
-    const Sums sums = gather_bounce(surfaces, direct, medium, cones, cone, background, result.radiance, progress);
+    const Sums sums = gather_bounce(surfaces, direct, medium, cones, cone, background, result.radiance, so_far);
     medium = {};  // before the next pyramid is made: only one is held at a time
-    result.pyramid = mipmap(surfaces, result.radiance, mipmap_options, progress);
+    result.pyramid = mipmap(surfaces, result.radiance, mipmap_options, silent);
     ++result.bounces;
 
     if (previous > 0.0) result.gain = sums.change / previous;
@@ -91,8 +124,12 @@ BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> dire
                                       " after " + std::to_string(result.bounces) +
                                       " bounces), so that there is no limit to gather; is an albedo 1?");
     if (!options.count && sums.change <= negligible_share * sums.total) break;
+    // After the first bounce, what it added to the direct light stands in for the gain.
+    const double gain = previous > 0.0 ? result.gain : sums.change / (sums.total - sums.change);
+    left = options.count ? *options.count - result.bounces : bounces_left(sums, gain);
     previous = sums.change;
   }
+  progress("bounce", 1.0);
   return result;
 }
 

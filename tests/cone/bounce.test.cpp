@@ -133,6 +133,32 @@ TEST_CASE("A thin sheet gathers from both sides and takes the mean", "[bounce]")
         Approx(0.5f * 0.8f).epsilon(0.05));  // six cones at its centre: 0.97 at worst, two gathers
 }
 
+TEST_CASE("Progress is one fraction over all bounces that never falls", "[bounce]") {
+  const ThreadLimit one(1);  // several report slightly out of order
+  const SurfaceGrid surfaces = box_surfaces(box_size, 0.7f);
+  const std::vector<glm::vec3> direct(surfaces.size(), glm::vec3(1.0f));
+  const Pyramid filtered = mipmap(surfaces, direct, {});
+  for (const std::optional<int> count : {std::optional<int>(4), std::optional<int>()}) {
+    double last = 0.0, largest_step = 0.0;
+    size_t backwards = 0, other_stages = 0;
+    Progress progress;
+    progress.report = [&](std::string_view stage, double fraction) {
+      other_stages += stage != "bounce";
+      backwards += fraction < last;
+      largest_step = std::max(largest_step, fraction - last);
+      last = fraction;
+    };
+    BounceOptions options;
+    options.count = count;
+    bounce(surfaces, direct, Pyramid(filtered), options, {}, {}, glm::vec3(0.0f), progress);
+    CAPTURE(count.value_or(-1));
+    CHECK(other_stages == 0);
+    CHECK(backwards == 0);
+    CHECK(last == 1.0);
+    CHECK(largest_step < 0.2);  // a task of 256 voxels is a tenth of this box, and a first bounce a quarter of all
+  }
+}
+
 TEST_CASE("A bounce under way can be stopped", "[bounce]") {
   const std::atomic<bool> stop{true};
   Progress progress;

@@ -1,6 +1,7 @@
 #include "reference/path.h"
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -282,6 +283,27 @@ TEST_CASE("A cancelled render keeps its finished passes, or throws when there is
   CHECK(stopped.interrupted);
   CHECK(stopped.spp == 16);  // 0.27 of 64 is early in the fifth pass
   CHECK(stopped.image.channel("samples")[0] == 16.0f);
+}
+
+TEST_CASE("However many samples are asked for, the first are soon there and a stop is heard at once", "[path]") {
+  const Scene scene = room();
+  const Caster caster(scene);
+  PathOptions options;
+  options.spp = 1 << 24;
+  std::atomic<bool> cancel = false;
+  Progress progress;
+  progress.cancel = &cancel;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point asked;
+  progress.report = [&](std::string_view, double fraction) {
+    if (fraction < 1e-4 || cancel.exchange(true)) return;
+    asked = Clock::now();
+  };
+  const PathResult stopped = path_trace(scene, caster, room_view(16), options, progress);
+  // One tile: passes of 1024 samples, some milliseconds per pixel even under a sanitizer.
+  CHECK(std::chrono::duration<double>(Clock::now() - asked).count() < 1.0);
+  CHECK(stopped.interrupted);
+  CHECK(stopped.spp == 2048);  // 1e-4 of all samples is the end of the second pass
 }
 
 TEST_CASE("Contributions that are not finite are counted, placed and left out", "[path]") {
