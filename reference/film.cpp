@@ -21,11 +21,15 @@ void set(const std::array<std::span<float>, 3>& layer, size_t pixel, const glm::
 
 }  // namespace
 
-Film::Film(int width, int height)
-    : width_(width), height_(height), pixels_(static_cast<size_t>(width) * static_cast<size_t>(height)) {}
+Film::Film(int width, int height, const ExtraLayers& extra)
+    : width_(width),
+      height_(height),
+      pixels_(static_cast<size_t>(width) * static_cast<size_t>(height)),
+      extra_layers_(extra),
+      extra_(pixels_.size() * extra.count()) {}
 
-void Film::add(std::span<const PixelBatch> batches, int samples) {
-  assert(batches.size() == pixels_.size() && samples > 0);
+void Film::add(std::span<const PixelBatch> batches, int samples, std::span<const glm::vec3> extra) {
+  assert(batches.size() == pixels_.size() && extra.size() == extra_.size() && samples > 0);
   const double n = samples;
   parallel_for(pixels_.size(), pixels_per_task, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -51,6 +55,7 @@ void Film::add(std::span<const PixelBatch> batches, int samples) {
       pixel.depth += n * batch.depth;
     }
   });
+  for (size_t i = 0; i < extra.size(); ++i) extra_[i] += n * glm::dvec3(extra[i]);
   samples_ += samples;
   square_samples_ += n * n;
   ++passes_;
@@ -116,7 +121,22 @@ Image Film::image() const {
     set(normal, i, pixel.normal / hits);
     depth[i] = static_cast<float>(pixel.depth / hits);
   }
+  add_extra_layers(image);
   return image;
+}
+
+void Film::add_extra_layers(Image& image) const {
+  const std::vector<std::string> names = extra_layers_.names();
+  for (size_t layer = 0; layer < names.size(); ++layer) {
+    image.add_layer(names[layer]);
+    const auto planes = image.layer(names[layer]);
+    const bool of_hits =
+        names[layer] == "irradiance";  // only a surface has it; bounces are shares of the pixel's light
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+      const double samples = of_hits ? std::max(pixels_[i].hits, 1.0) : samples_;
+      set(planes, i, extra_[i * names.size() + layer] / samples);
+    }
+  }
 }
 
 }  // namespace voxref

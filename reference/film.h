@@ -22,10 +22,11 @@ namespace voxref {
 /// pass's variance falls with its number of samples.
 class Film {
  public:
-  Film(int width, int height);
+  Film(int width, int height, const ExtraLayers& extra = {});
 
   /// @param batches one per pixel, row by row @param samples that each is the mean of
-  void add(std::span<const PixelBatch> batches, int samples);
+  /// @param extra the extra layers, as many per pixel as there are
+  void add(std::span<const PixelBatch> batches, int samples, std::span<const glm::vec3> extra = {});
 
   int samples() const { return samples_; }  ///< per pixel
   int passes() const { return passes_; }
@@ -36,7 +37,7 @@ class Film {
   glm::vec3 mean() const;
   glm::vec3 mean_stderr() const;
   /// The layers of `path`: R,G,B = direct + indirect + emission exactly (summed in that order in float32), standard
-  /// errors, and what the camera sees, as means over the samples that hit a surface.
+  /// errors, and what the camera sees, as means over the samples that hit a surface; then the extra layers.
   Image image() const;
 
  private:
@@ -52,11 +53,14 @@ class Film {
   };
   double mean(const Moments& moments) const { return moments.sum / samples_; }
   double variance(const Moments& moments) const;
+  void add_extra_layers(Image& image) const;
 
   int width_, height_;
   int samples_ = 0, passes_ = 0;
   double square_samples_ = 0.0;  // sum n_i^2
   std::vector<Pixel> pixels_;
+  ExtraLayers extra_layers_;
+  std::vector<glm::dvec3> extra_;  // sums of n_i m_i, extra_layers_.count() per pixel
 };
 
 }  // namespace voxref

@@ -52,14 +52,16 @@ void PassCounts::add(const PassCounts& other) {
 }
 
 PassRenderer::PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth,
-                           uint64_t seed)
+                           uint64_t seed, const ExtraLayers& extra)
     : view_(view),
       rays_(view),
       integrator_(scene, caster, view.background, max_depth),
+      extra_(scene, caster, view.background, max_depth, extra),
       seed_(seed),
       columns_(static_cast<size_t>((view.width + tile_side - 1) / tile_side)),
       rows_(static_cast<size_t>((view.height + tile_side - 1) / tile_side)),
-      batches_(static_cast<size_t>(view.width) * static_cast<size_t>(view.height)) {}
+      batches_(static_cast<size_t>(view.width) * static_cast<size_t>(view.height)),
+      extra_batches_(batches_.size() * extra.count()) {}
 
 std::optional<PassCounts> PassRenderer::render(const Pass& pass, const Progress& progress,
                                                const std::function<void(double)>& report) {
@@ -81,17 +83,18 @@ bool PassRenderer::render_tile(size_t tile, const Pass& pass, const Progress& pr
   for (int y = top; y < std::min(top + tile_side, view_.height); ++y)
     for (int x = left; x < std::min(left + tile_side, view_.width); ++x) {
       if (progress.cancelled()) return false;
-      batches_[static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x)] =
-          render_pixel(x, y, pass, counts);
+      render_pixel(x, y, pass, counts);
     }
   return true;
 }
 
-PixelBatch PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts& counts) const {
+void PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts& counts) {
+  const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x);
   const uint64_t key =
       randomization_key(seed_, static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(pass.number));
   const bool center = view_.pixel == PixelSampling::center;
   PixelSum sum;
+  std::vector<glm::dvec3> extra(extra_.count(), glm::dvec3(0.0));
   std::optional<PathVertex> seen;
   for (int i = 0; i < pass.samples; ++i) {
     const Sampler sampler(key, static_cast<uint32_t>(i));
@@ -100,13 +103,14 @@ PixelBatch PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts
       integrator_.cast(rays_(glm::vec2(x, y) + (center ? glm::vec2(0.5f) : sampler.get_2d(0))), seen, counts.paths);
     const uint64_t nonfinite_before = counts.paths.nonfinite;
     sum.add(integrator_.trace(seen, sampler, counts.paths));
+    if (!extra.empty()) extra_.trace(seen, sampler, extra, counts.paths.rays);
     if (seen) sum.add(seen->surface, glm::dot(seen->surface.position - rays_.eye(), rays_.forward()));
-    if (counts.paths.nonfinite != nonfinite_before) {
-      const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x);
+    if (counts.paths.nonfinite != nonfinite_before)
       counts.first_nonfinite = std::min(counts.first_nonfinite, SamplePlace{pixel, pass.samples_before + i});
-    }
   }
-  return sum.mean(pass.samples);
+  batches_[pixel] = sum.mean(pass.samples);
+  for (size_t i = 0; i < extra.size(); ++i)
+    extra_batches_[pixel * extra.size() + i] = extra[i] / static_cast<double>(pass.samples);
 }
 
 }  // namespace voxref

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "progress.h"
+#include "reference/extra_layers.h"
 #include "reference/integrator.h"
 #include "scene/camera.h"
 
@@ -51,7 +52,8 @@ struct Pass {
 /// among each other and independent of all other passes and pixels. Keeps references to its arguments.
 class PassRenderer {
  public:
-  PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth, uint64_t seed);
+  PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth, uint64_t seed,
+               const ExtraLayers& extra);
 
   /// Renders one pass; the same bits whatever the number of threads. @param report takes the finished fraction, from
   /// any thread. @returns nothing when the caller cancelled: batches() are then incomplete
@@ -60,18 +62,22 @@ class PassRenderer {
 
   /// One per pixel, row by row, of the pass that was rendered last.
   std::span<const PixelBatch> batches() const { return batches_; }
+  /// The extra layers' means, as many per pixel as there are.
+  std::span<const glm::vec3> extra_batches() const { return extra_batches_; }
 
  private:
   /// False when it was cancelled: asked at every pixel, because a tile of many samples may take a minute.
   bool render_tile(size_t tile, const Pass& pass, const Progress& progress, PassCounts& counts);
-  PixelBatch render_pixel(int x, int y, const Pass& pass, PassCounts& counts) const;
+  void render_pixel(int x, int y, const Pass& pass, PassCounts& counts);
 
   const View& view_;
   RayGenerator rays_;
   Integrator integrator_;
+  ExtraTracer extra_;
   uint64_t seed_;
   size_t columns_, rows_;  // of tiles
   std::vector<PixelBatch> batches_;
+  std::vector<glm::vec3> extra_batches_;
 };
 
 }  // namespace voxref

@@ -52,6 +52,7 @@ void check(const PathOptions& options, const View& view) {
   if (options.seconds && !(*options.seconds > 0.0)) throw Error("time", "must be above 0 seconds");
   if (options.max_depth && *options.max_depth < 0)
     throw Error("max-depth", std::to_string(*options.max_depth) + " is below 0");
+  if (options.extra.bounces < 0) throw Error("bounces", std::to_string(options.extra.bounces) + " is below 0");
 }
 
 /// How far a render is, between two passes.
@@ -97,8 +98,8 @@ std::string describe(const SamplePlace& place, int width) {
 PathResult path_trace(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options,
                       const Progress& progress) {
   check(options, view);
-  PassRenderer renderer(scene, caster, view, options.max_depth, options.seed);
-  Film film(view.width, view.height);
+  PassRenderer renderer(scene, caster, view, options.max_depth, options.seed, options.extra);
+  Film film(view.width, view.height, options.extra);
   PathResult result;
   PassCounts counts;
   Standing now;
@@ -115,7 +116,7 @@ PathResult path_trace(const Scene& scene, const Caster& caster, const View& view
       result.interrupted = true;
       break;
     }
-    film.add(renderer.batches(), samples);
+    film.add(renderer.batches(), samples, renderer.extra_batches());
     counts.add(*pass);
     now = {film.passes(), film.samples(), seconds(), now.noise};
     if (options.noise && now.passes >= least_passes) now.noise = film.noise();

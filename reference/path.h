@@ -5,6 +5,7 @@
 
 #include "image/image.h"
 #include "progress.h"
+#include "reference/extra_layers.h"
 #include "scene/caster.h"
 #include "scene/scene.h"
 
@@ -18,6 +19,7 @@ struct PathOptions {
   std::optional<int>
       max_depth;  ///< 0: emission only, 1: direct, 2: one indirect bounce ...; none: Russian roulette alone
   uint64_t seed = 0;
+  ExtraLayers extra;
 };
 
 struct PathResult {

@@ -289,6 +289,17 @@ TEST_CASE("an image's header says where it comes from", "[cli]") {
   CHECK(json::parse(cone_header.at("voxref:settings"))["grid"]["resolution"] == 24);
 }
 
+TEST_CASE("bounces and irradiance are layers for who asks", "[cli]") {
+  const Workplace place;
+  REQUIRE(place.run("path point.glb -o path.exr --spp 2 --bounces 2 --irradiance" + small_view).status == 0);
+  const voxref::Image image = voxref::read_image(place.path("path.exr"));
+  CHECK(image.has_layer("bounce.1"));
+  CHECK(image.has_layer("bounce.2"));
+  CHECK(!image.has_layer("bounce.3"));
+  CHECK(image.has_layer("irradiance"));
+  check_refused(place, "path point.glb -o out.exr --bounces 0", "--bounces");
+}
+
 TEST_CASE("a scene without triangles renders its background", "[cli]") {
   const Workplace place;
   const json expected = {0.5, 0.25, 0.125};

@@ -169,6 +169,12 @@ void add_path_options(CLI::App& command, PathOptions& options) {
   add_value_option(command, "--seed", "N", "of the random numbers (default: 0)", [&options](const std::string& text) {
     options.seed = parse_integer("--seed", text, 0, std::numeric_limits<uint64_t>::max());
   });
+  add_value_option(command, "--bounces", "N", "layers bounce.1 ... bounce.N too: indirect light by bounce",
+                   [&options](const std::string& text) {
+                     constexpr int most_bounces = 64;  // each costs a path of its own
+                     options.extra.bounces = static_cast<int>(parse_integer("--bounces", text, 1, most_bounces));
+                   });
+  command.add_flag("--irradiance", options.extra.irradiance, "layer irradiance too: what arrives at the first hit");
   command.parse_complete_callback([&options] {
     if (options.spp == 0 && !options.noise && !options.seconds) options.spp = usual_spp;
   });
