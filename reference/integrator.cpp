@@ -56,17 +56,17 @@ struct Integrator::State {
 
 Integrator::Integrator(const Scene& scene, const Caster& caster, const glm::vec3& background,
                        std::optional<int> max_depth)
-    : scene_(scene),
+    : surfaces_(scene),
       caster_(caster),
-      lights_(scene),
+      lights_(scene, surfaces_.materials()),
       background_(background),
       max_depth_(max_depth.value_or(std::numeric_limits<int>::max())),
       light_can_be_hit_(scene.has_emission() || background != glm::vec3(0.0f)) {}
 
 void Integrator::cast(const Ray& ray, std::optional<PathVertex>& vertex, PathCounts& counts) const {
-  ++counts.rays;
+  ++counts.closest_rays;
   if (const Hit hit = caster_.closest(ray))
-    vertex.emplace(scene_, hit, ray);
+    vertex.emplace(surfaces_, hit, ray);
   else
     vertex.reset();
 }
@@ -109,7 +109,7 @@ void Integrator::add_punctual(State& state, const Bsdf& bsdf) const {
   if (radiance == glm::vec3(0.0f)) return;
   Ray ray = caster_.leave(surface.position, surface.geometric_normal, light->to_light);
   ray.tmax = light->distance;
-  ++state.counts.rays;
+  ++state.counts.occlusion_rays;
   if (!caster_.occluded(ray)) state.add(state.depth + 1, state.throughput * radiance);
 }
 
@@ -121,7 +121,7 @@ void Integrator::add_emitters(State& state, const Bsdf& bsdf) const {
   const glm::vec3 radiance = bsdf.value(light->to_light) * light->radiance;
   if (radiance == glm::vec3(0.0f)) return;
   const float offset = caster_.surface_offset();
-  ++state.counts.rays;
+  ++state.counts.occlusion_rays;
   if (!caster_.visible(surface.position + offset * surface.geometric_normal, light->position + offset * light->normal))
     return;
   const float weight = power_heuristic(light->pdf, bsdf.pdf(light->to_light));

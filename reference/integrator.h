@@ -22,8 +22,8 @@ struct Layers {
 /// Where a path meets a surface.
 struct PathVertex {
   /// @param ray unit direction; the one that hit
-  PathVertex(const Scene& scene, const Hit& hit, const Ray& ray)
-      : to_previous(-ray.direction), distance(hit.t), surface(surface_point(scene, hit, to_previous)) {}
+  PathVertex(const Surfaces& surfaces, const Hit& hit, const Ray& ray)
+      : to_previous(-ray.direction), distance(hit.t), surface(surfaces.point(hit, to_previous)) {}
 
   glm::vec3 to_previous;  ///< unit, towards the vertex before
   float distance;         ///< from there, world units
@@ -32,7 +32,7 @@ struct PathVertex {
 
 /// Counted along the way; integers, so that their sum does not depend on the order.
 struct PathCounts {
-  uint64_t rays = 0;       ///< closest-hit plus occlusion rays
+  uint64_t closest_rays = 0, occlusion_rays = 0;
   uint64_t nonfinite = 0;  ///< contributions that were NaN or infinite and were left out
 };
 
@@ -57,7 +57,7 @@ class Integrator {
   void add_emitters(State& state, const class Bsdf& bsdf) const;
   bool scatter(State& state, const class Bsdf& bsdf) const;
 
-  const Scene& scene_;
+  Surfaces surfaces_;
   const Caster& caster_;
   LightSampler lights_;
   glm::vec3 background_;

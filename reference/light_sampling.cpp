@@ -10,7 +10,6 @@
 #include "reference/sampler.h"
 #include "reference/warp.h"
 #include "scene/ray.h"
-#include "scene/surface.h"
 
 namespace voxref {
 
@@ -75,13 +74,13 @@ double power(const Light& light, double scene_radius) {
   return 0.0;
 }
 
-glm::vec3 mean_emission(const Scene& scene, uint32_t triangle) {
+glm::vec3 mean_emission(const Materials& materials, uint32_t triangle) {
   glm::vec3 sum(0.0f);
   int count = 0;
   for (int i = 0; i < emission_parts; ++i)
     for (int j = 0; j + i < emission_parts; ++j, ++count) {
       const glm::vec2 uv = (glm::vec2(i, j) + 1.0f / 3.0f) / static_cast<float>(emission_parts);
-      const MaterialPoint point = material_point(scene, triangle, uv);
+      const MaterialPoint point = materials.point(triangle, uv);
       sum += point.opacity * point.emission;
     }
   return sum / static_cast<float>(count);
@@ -89,7 +88,7 @@ glm::vec3 mean_emission(const Scene& scene, uint32_t triangle) {
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene) : scene_(scene) {
+LightSampler::LightSampler(const Scene& scene, const Materials& materials) : scene_(scene), materials_(materials) {
   add_punctual();
   add_emitters();
 }
@@ -115,7 +114,7 @@ void LightSampler::add_emitters() {
     const glm::vec3 normal = glm::cross(emitter.edge_u, emitter.edge_v);
     const float twice_area = glm::length(normal);
     emitter.varies = material.emission_texture || material.alpha_mode == AlphaMode::mask;
-    emitter.emission = emitter.varies ? mean_emission(scene_, triangle) : material.emission;
+    emitter.emission = emitter.varies ? mean_emission(materials_, triangle) : material.emission;
     emitter.double_sided = material.double_sided;
     const double weight = 0.5 * twice_area * luminance(emitter.emission) * (emitter.double_sided ? 2.0 : 1.0);
     // What is never drawn is still found by the BSDF's rays, which then count in full.
@@ -177,7 +176,7 @@ std::optional<EmitterSample> LightSampler::sample_emitter(const glm::vec3& point
   sample.pdf = emitter.area_pdf * distance * distance / std::abs(cosine);
   sample.radiance = emitter.emission;
   if (emitter.varies) {
-    const MaterialPoint material = material_point(scene_, emitter.triangle, uv);
+    const MaterialPoint material = materials_.point(emitter.triangle, uv);
     sample.radiance = material.opacity * material.emission;
   }
   return sample;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "scene/surface.h"
 
 namespace voxref {
 
@@ -52,14 +53,14 @@ struct EmitterSample {
   float pdf = 0.0f;          ///< per solid angle at the receiver
 };
 
-/// Chooses among a scene's lights. Keeps a reference to the scene.
+/// Chooses among a scene's lights. Keeps references to the scene and its materials.
 ///
 /// Punctual lights: where there are few, in proportion to the irradiance that each would give at the point; else in
 /// proportion to the power that they send into the scene. Emissive triangles: in proportion to area x luminance of
 /// their mean emission, then uniformly over the area.
 class LightSampler {
  public:
-  explicit LightSampler(const Scene& scene);
+  LightSampler(const Scene& scene, const Materials& materials);
 
   size_t punctual_count() const { return scene_.lights.size(); }
   bool has_emitters() const { return !emitters_.empty(); }
@@ -86,6 +87,7 @@ class LightSampler {
   void add_punctual();
 
   const Scene& scene_;
+  const Materials& materials_;
   AliasTable punctual_;
   std::vector<Emitter> emitters_;
   AliasTable emitter_table_;

@@ -46,7 +46,8 @@ struct PixelSum {
 }  // namespace
 
 void PassCounts::add(const PassCounts& other) {
-  paths.rays += other.paths.rays;
+  paths.closest_rays += other.paths.closest_rays;
+  paths.occlusion_rays += other.paths.occlusion_rays;
   paths.nonfinite += other.paths.nonfinite;
   first_nonfinite = std::min(first_nonfinite, other.first_nonfinite);
 }

@@ -127,7 +127,9 @@ PathResult path_trace(const Scene& scene, const Caster& caster, const View& view
   result.mean_stderr = film.mean_stderr();
   result.spp = now.samples;
   result.seconds = now.seconds;
-  result.rays = counts.paths.rays;
+  result.closest_rays = counts.paths.closest_rays;
+  result.occlusion_rays = counts.paths.occlusion_rays;
+  result.rays = result.closest_rays + result.occlusion_rays;
   result.nonfinite = counts.paths.nonfinite;
   if (result.nonfinite > 0) result.first_nonfinite = describe(counts.first_nonfinite, view.width);
   return result;

@@ -38,6 +38,7 @@ class Renderer {
   Renderer(const Scene& scene, const Caster& caster, const Medium& medium, const View& view,
            const RenderOptions& options)
       : scene_(scene),
+        surfaces_(scene),
         caster_(caster),
         medium_(medium),
         view_(view),
@@ -70,7 +71,7 @@ class Renderer {
     }
     seen.hits = 1.0f;
     const glm::vec3 to_viewer = -glm::normalize(ray.direction);
-    const SurfacePoint point = surface_point(scene_, hit, to_viewer);
+    const SurfacePoint point = surfaces_.point(hit, to_viewer);
     const float n_v = std::clamp(glm::dot(point.shading_normal, to_viewer), 0.0f, 1.0f);
     seen.normal = point.shading_normal;
     seen.depth = glm::dot(point.position - rays_.eye(), rays_.forward());
@@ -140,6 +141,7 @@ class Renderer {
   }
 
   const Scene& scene_;
+  Surfaces surfaces_;
   const Caster& caster_;
   const Medium& medium_;
   const View& view_;

@@ -104,11 +104,16 @@ glm::vec3 mapped_normal(const Scene& scene, const Material& m, const glm::uvec3&
   return mapped_length > 0.0f ? mapped / mapped_length : normal;
 }
 
-}  // namespace
+/// Whether the material looks the same at all points of all its surfaces; its normal map apart.
+bool is_constant(const Scene& scene, const Material& m) {
+  if (!scene.colors.empty()) return false;
+  for (const TextureBinding* binding : {&m.base_color_texture, &m.metallic_roughness_texture, &m.specular_texture,
+                                        &m.specular_color_texture, &m.emission_texture})
+    if (*binding && !scene.uv[binding->uv_set].empty()) return false;
+  return true;
+}
 
-MaterialPoint material_point(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
-  const Material& m = scene.materials[scene.triangle_materials[triangle]];
-  const glm::uvec3& corners = scene.triangles[triangle];
+MaterialPoint material_point(const Scene& scene, const Material& m, const glm::uvec3& corners, const glm::vec2& uv) {
   const TextureReader texture(scene, corners, uv);
   const glm::vec4 base = base_color(scene, m, corners, uv, texture);
   MaterialPoint point;
@@ -120,44 +125,85 @@ MaterialPoint material_point(const Scene& scene, uint32_t triangle, const glm::v
   return point;
 }
 
+/// `normal` made unit; `fallback` where it has no direction.
+glm::vec3 unit_or(const glm::vec3& normal, const glm::vec3& fallback) {
+  const float length = glm::length(normal);
+  return length > 0.0f ? normal / length : fallback;
+}
+
+}  // namespace
+
+Materials::Materials(const Scene& scene) : scene_(scene), constant_(scene.materials.size()) {
+  // A constant material reads nothing of the triangle, so that any will do.
+  for (size_t i = 0; i < constant_.size(); ++i)
+    if (is_constant(scene, scene.materials[i]))
+      constant_[i] = material_point(scene, scene.materials[i], glm::uvec3(0), glm::vec2(0.0f));
+}
+
+MaterialPoint Materials::point(uint32_t triangle, const glm::vec2& uv) const {
+  const uint32_t material = scene_.triangle_materials[triangle];
+  if (constant_[material]) return *constant_[material];
+  return material_point(scene_, scene_.materials[material], scene_.triangles[triangle], uv);
+}
+
 bool covered(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
   const Material& m = scene.materials[scene.triangle_materials[triangle]];
   const glm::uvec3& corners = scene.triangles[triangle];
   return !hole(m, base_color(scene, m, corners, uv, TextureReader(scene, corners, uv)).a);
 }
 
-SurfacePoint surface_point(const Scene& scene, const Hit& hit, const glm::vec3& to_viewer) {
-  const glm::uvec3& corners = scene.triangles[hit.triangle];
+Surfaces::Surfaces(const Scene& scene) : scene_(scene), materials_(scene) {
+  triangles_.reserve(scene.triangles.size());
+  for (size_t i = 0; i < scene.triangles.size(); ++i) {
+    const glm::uvec3& corners = scene.triangles[i];
+    Triangle t{};
+    t.a = scene.positions[corners.x];
+    t.b = scene.positions[corners.y];
+    t.c = scene.positions[corners.z];
+    t.geometric_normal = glm::normalize(glm::cross(t.b - t.a, t.c - t.a));
+    t.material = scene.triangle_materials[i];
+    const bool normal_map = scene.materials[t.material].normal_texture && !scene.tangents.empty();
+    const glm::vec3& normal = scene.normals[corners.x];
+    if (!normal_map && normal == scene.normals[corners.y] && normal == scene.normals[corners.z])
+      t.shading_normal = unit_or(normal, t.geometric_normal);
+    triangles_.push_back(t);
+  }
+}
+
+/// Interpolated and mapped, on the counter-clockwise side.
+glm::vec3 Surfaces::shading_normal(const Hit& hit, const Triangle& triangle) const {
+  const glm::uvec3& corners = scene_.triangles[hit.triangle];
+  const glm::vec3 normal = unit_or(interpolate(scene_.normals, corners, hit.uv), triangle.geometric_normal);
+  const Material& m = scene_.materials[triangle.material];
+  if (!m.normal_texture || scene_.tangents.empty()) return normal;
+  return mapped_normal(scene_, m, corners, hit.uv, normal, TextureReader(scene_, corners, hit.uv));
+}
+
+SurfacePoint Surfaces::point(const Hit& hit, const glm::vec3& to_viewer) const {
+  const Triangle& triangle = triangles_[hit.triangle];
   SurfacePoint point;
   point.triangle = hit.triangle;
-  point.material = scene.triangle_materials[hit.triangle];
-  point.position = interpolate(scene.positions, corners, hit.uv);
-  const Material& m = scene.materials[point.material];
+  point.material = triangle.material;
+  point.position = (1.0f - hit.uv.x - hit.uv.y) * triangle.a + hit.uv.x * triangle.b + hit.uv.y * triangle.c;
+  point.front = glm::dot(triangle.geometric_normal, to_viewer) >= 0.0f;
 
-  const glm::vec3& a = scene.positions[corners.x];
-  glm::vec3 geometric = glm::normalize(glm::cross(scene.positions[corners.y] - a, scene.positions[corners.z] - a));
-  point.front = glm::dot(geometric, to_viewer) >= 0.0f;
-
-  glm::vec3 shading = interpolate(scene.normals, corners, hit.uv);
-  const float length = glm::length(shading);
-  shading = length > 0.0f ? shading / length : geometric;
-  if (m.normal_texture && !scene.tangents.empty()) {
-    const TextureReader texture(scene, corners, hit.uv);
-    shading = mapped_normal(scene, m, corners, hit.uv, shading, texture);
-  }
-  if (!point.front) {
-    geometric = -geometric;
-    shading = -shading;
-  }
+  const float side = point.front ? 1.0f : -1.0f;
+  const bool varies = triangle.shading_normal == glm::vec3(0.0f);
+  glm::vec3 shading = side * (varies ? shading_normal(hit, triangle) : triangle.shading_normal);
   const float view_cosine = glm::dot(shading, to_viewer);
   if (view_cosine < least_view_cosine)
     shading = glm::normalize(shading + (least_view_cosine - view_cosine) * to_viewer);
-  point.geometric_normal = geometric;
+  point.geometric_normal = side * triangle.geometric_normal;
   point.shading_normal = shading;
 
-  const MaterialPoint material = material_point(scene, hit.triangle, hit.uv);
-  point.reflectance = material.reflectance;
-  if (point.front || m.double_sided) point.emission = material.emission;
+  const auto take = [&](const MaterialPoint& material) {
+    point.reflectance = material.reflectance;
+    if (point.front || scene_.materials[triangle.material].double_sided) point.emission = material.emission;
+  };
+  if (const MaterialPoint* constant = materials_.constant(triangle.material))
+    take(*constant);
+  else
+    take(materials_.point(hit.triangle, hit.uv));
   return point;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
 
 #include "scene/ray.h"
 #include "scene/reflectance.h"
@@ -19,9 +21,6 @@ struct SurfacePoint {
   bool front = true;  ///< the viewer is on the counter-clockwise side
 };
 
-/// @param to_viewer unit
-SurfacePoint surface_point(const Scene& scene, const Hit& hit, const glm::vec3& to_viewer);
-
 /// A material's values at a point, textures looked up.
 struct MaterialPoint {
   Reflectance reflectance;
@@ -30,8 +29,48 @@ struct MaterialPoint {
   float opacity = 1.0f;        ///< 1 or, in the holes of a mask, 0
 };
 
-/// @param uv barycentric coordinates in the triangle, as in Hit
-MaterialPoint material_point(const Scene& scene, uint32_t triangle, const glm::vec2& uv);
+/// Evaluates a scene's materials; those that are the same all over a surface only once, when constructed. Keeps a
+/// reference to the scene.
+class Materials {
+ public:
+  explicit Materials(const Scene& scene);
+
+  /// @param uv barycentric coordinates in the triangle, as in Hit
+  MaterialPoint point(uint32_t triangle, const glm::vec2& uv) const;
+  /// What the material is everywhere; null when textures or vertex colours vary it.
+  const MaterialPoint* constant(uint32_t material) const {
+    return constant_[material] ? &*constant_[material] : nullptr;
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<std::optional<MaterialPoint>> constant_;  // one per material
+};
+
+/// Looks up what rays hit. What does not change over a triangle is computed once, when constructed. Immutable; keeps a
+/// reference to the scene.
+class Surfaces {
+ public:
+  explicit Surfaces(const Scene& scene);
+
+  /// @param to_viewer unit
+  SurfacePoint point(const Hit& hit, const glm::vec3& to_viewer) const;
+  const Materials& materials() const { return materials_; }
+
+ private:
+  /// All that most hits need of a triangle, side by side in one line of the cache.
+  struct alignas(64) Triangle {
+    glm::vec3 a, b, c;
+    glm::vec3 geometric_normal;  // unit, of the counter-clockwise side
+    glm::vec3 shading_normal;    // unit where it is the same all over, else zero
+    uint32_t material;
+  };
+  glm::vec3 shading_normal(const Hit& hit, const Triangle& triangle) const;
+
+  const Scene& scene_;
+  Materials materials_;
+  std::vector<Triangle> triangles_;
+};
 
 /// Coverage of a mask alone: what the caster asks for. False in a hole.
 bool covered(const Scene& scene, uint32_t triangle, const glm::vec2& uv);

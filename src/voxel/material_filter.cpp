@@ -5,8 +5,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "scene/surface.h"
-
 namespace voxref {
 
 namespace {
@@ -65,24 +63,21 @@ double texels_per_unit_area(const Scene& scene, const TextureBinding& binding) {
 
 }  // namespace
 
-MaterialFilter::MaterialFilter(const Scene& scene) : scene_(scene), entries_(scene.materials.size()) {
+MaterialFilter::MaterialFilter(const Scene& scene)
+    : scene_(scene), materials_(scene), entries_(scene.materials.size()) {
   for (size_t i = 0; i < entries_.size(); ++i) {
+    if (const MaterialPoint* constant = materials_.constant(static_cast<uint32_t>(i))) {
+      entries_[i].constant = at_point(*constant);
+      continue;
+    }
+    entries_[i].varies = true;
     const Material& m = scene.materials[i];
-    entries_[i].varies = !scene.colors.empty();
     for (const TextureBinding* binding : {&m.base_color_texture, &m.metallic_roughness_texture, &m.specular_texture,
                                           &m.specular_color_texture, &m.emission_texture})
       if (*binding && !scene.uv[binding->uv_set].empty()) {
-        entries_[i].varies = true;
         double& texels = entries_[i].texels[binding->uv_set];
         texels = std::max(texels, texels_per_unit_area(scene, *binding));
       }
-  }
-  std::vector<bool> known(entries_.size());
-  for (size_t t = 0; t < scene.triangles.size(); ++t) {
-    const uint32_t material = scene.triangle_materials[t];
-    if (known[material] || entries_[material].varies) continue;
-    known[material] = true;
-    entries_[material].constant = at_point(material_point(scene, uint32_t(t), glm::vec2(1.0f / 3.0f)));
   }
 }
 
@@ -106,7 +101,7 @@ FilteredMaterial MaterialFilter::operator()(const TrianglePlane& plane, const Cl
   FilteredMaterial mean{0.0};
   int count = 0;
   const auto add = [&](const glm::dvec2& uv) {
-    const FilteredMaterial sample = at_point(material_point(scene_, plane.triangle, glm::vec2(uv)));
+    const FilteredMaterial sample = at_point(materials_.point(plane.triangle, glm::vec2(uv)));
     mean.coverage += sample.coverage;
     mean.albedo += sample.coverage * sample.albedo;
     mean.emission += sample.coverage * sample.emission;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "scene/surface.h"
 #include "voxel/clip.h"
 
 namespace voxref {
@@ -45,6 +46,7 @@ class MaterialFilter {
   double texels_per_voxel(const Entry& entry, uint32_t triangle, double area) const;
 
   const Scene& scene_;
+  Materials materials_;
   std::vector<Entry> entries_;  ///< one per material
 };
 

@@ -131,11 +131,12 @@ TEST_CASE("A dielectric floor under a constant sky sends back what its direction
   const Image image = render(scene, view).image;
   const RayGenerator rays(view);
   const Caster caster(scene);
+  const Surfaces surfaces(scene);
   for (int i = 0; i < 64; ++i) {
     const Ray ray = rays({float(i % 8) + 0.5f, float(i / 8) + 0.5f});
     const Hit hit = caster.closest(ray);
     REQUIRE(hit);
-    const SurfacePoint point = surface_point(scene, hit, -ray.direction);
+    const SurfacePoint point = surfaces.point(hit, -ray.direction);
     const float n_v = -ray.direction.y;
     const glm::vec3 truth =
         (diffuse_albedo(point.reflectance, n_v) + specular_albedo(point.reflectance, n_v)) * view.background;

@@ -67,7 +67,8 @@ TEST_CASE("The chosen punctual light's irradiance over its probability averages 
       const Illumination seen = illuminate(light, point);
       expected += seen.irradiance.g * glm::dot(normal, seen.to_light);
     }
-    const LightSampler lights(scene);
+    const Materials materials(scene);
+    const LightSampler lights(scene, materials);
     constexpr uint32_t steps = 1u << 16;
     double sum = 0.0;
     for (uint32_t i = 0; i < steps; ++i) {
@@ -86,7 +87,8 @@ TEST_CASE("Emissive triangles are sampled with the stated density", "[light_samp
   const uint32_t dim = add_material(scene, lambert(glm::vec3(0.0f), glm::vec3(1.0f)));
   add_quad(scene, {-0.5f, 1.0f, -0.5f}, {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, bright);
   add_quad(scene, {1.0f, 0.0f, -1.0f}, {0.0f, 0.0f, 2.0f}, {0.0f, 2.0f, 0.0f}, dim);
-  const LightSampler lights(scene);
+  const Materials materials(scene);
+  const LightSampler lights(scene, materials);
   double expected = 0.0;  // the solid angle of all, in double
   for (const glm::uvec3& t : scene.triangles)
     expected += solid_angle(scene.positions[t.x], scene.positions[t.y], scene.positions[t.z]);
@@ -115,7 +117,8 @@ TEST_CASE("Emission leaves the front only, unless the material is double-sided",
     Material material = lambert(glm::vec3(0.0f), glm::vec3(1.0f));
     material.double_sided = double_sided;
     add_floor(scene, 1.0f, add_material(scene, material));
-    const LightSampler lights(scene);
+    const Materials materials(scene);
+    const LightSampler lights(scene, materials);
     CHECK(lights.sample_emitter({0.0f, 1.0f, 0.0f}, {1u << 30, 3u << 30}).has_value());
     const auto below = lights.sample_emitter({0.0f, -1.0f, 0.0f}, {1u << 30, 3u << 30});
     CHECK(below.has_value() == double_sided);

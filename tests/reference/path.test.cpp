@@ -73,6 +73,7 @@ double mean_of(const Image& image, const std::string& channel) {
 struct BruteForce {
   const Scene& scene;
   const Caster& caster;
+  Surfaces surfaces{scene};
   std::mt19937_64 random{42};
 
   glm::vec3 uniform_direction(const glm::vec3& normal) {
@@ -86,7 +87,7 @@ struct BruteForce {
     const Hit hit = caster.closest(ray);
     if (!hit) return 0.0;
     const glm::vec3 out = -glm::normalize(ray.direction);
-    const SurfacePoint point = surface_point(scene, hit, out);
+    const SurfacePoint point = surfaces.point(hit, out);
     if (depth == 0) return point.emission.g;
     const glm::vec3 in = uniform_direction(point.geometric_normal);
     const float cosine = glm::dot(point.shading_normal, in);

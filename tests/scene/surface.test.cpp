@@ -24,6 +24,8 @@ Scene one_triangle(const Material& material) {
 
 Hit hit_at(float u, float v) { return {0, {u, v}, 1.0f}; }
 
+MaterialPoint material_at(const Scene& scene, const glm::vec2& uv) { return Materials(scene).point(0, uv); }
+
 const glm::vec3 above(0.0f, 0.0f, 1.0f);
 
 }  // namespace
@@ -32,26 +34,26 @@ TEST_CASE("normals turn to the viewer's side; emission leaves the front only, un
   Material lamp;
   lamp.emission = {1.0f, 2.0f, 3.0f};
   Scene scene = one_triangle(lamp);
-  const SurfacePoint front = surface_point(scene, hit_at(0.25f, 0.5f), above);
+  const SurfacePoint front = Surfaces(scene).point(hit_at(0.25f, 0.5f), above);
   CHECK(front.front);
   CHECK(front.position == glm::vec3(0.25f, 0.5f, 0.0f));
   CHECK(front.geometric_normal == above);
   CHECK(front.emission == lamp.emission);
-  const SurfacePoint back = surface_point(scene, hit_at(0.25f, 0.5f), -above);
+  const SurfacePoint back = Surfaces(scene).point(hit_at(0.25f, 0.5f), -above);
   CHECK_FALSE(back.front);
   CHECK(back.geometric_normal == -above);
   CHECK(back.shading_normal == -above);
   CHECK(back.emission == glm::vec3(0.0f));
   scene.materials[0].double_sided = true;
-  CHECK(surface_point(scene, hit_at(0.25f, 0.5f), -above).emission == lamp.emission);
+  CHECK(Surfaces(scene).point(hit_at(0.25f, 0.5f), -above).emission == lamp.emission);
 }
 
 TEST_CASE("interpolated normals are unit and bent to face the viewer", "[surface]") {
   Scene scene = one_triangle({});
   scene.normals = {glm::normalize(glm::vec3(1, 0, 1)), {0, 0, 1}, glm::normalize(glm::vec3(-1, 0, 1))};
-  CHECK(glm::length(surface_point(scene, hit_at(0.2f, 0.7f), above).shading_normal) == Approx(1.0f));
+  CHECK(glm::length(Surfaces(scene).point(hit_at(0.2f, 0.7f), above).shading_normal) == Approx(1.0f));
   const glm::vec3 grazing = glm::normalize(glm::vec3(-1.0f, 0.0f, 0.1f));
-  const SurfacePoint point = surface_point(scene, hit_at(0.0f, 0.0f), grazing);
+  const SurfacePoint point = Surfaces(scene).point(hit_at(0.0f, 0.0f), grazing);
   CHECK(glm::dot(point.shading_normal, grazing) > 0.0f);
 }
 
@@ -61,7 +63,7 @@ TEST_CASE("metallic-roughness comes out as glTF's appendix B says", "[surface]")
   m.roughness = 0.5f;
   SECTION("a dielectric keeps a 4 % lobe over its diffuse base") {
     m.metallic = 0.0f;
-    const Reflectance r = material_point(one_triangle(m), 0, {0.3f, 0.3f}).reflectance;
+    const Reflectance r = material_at(one_triangle(m), {0.3f, 0.3f}).reflectance;
     CHECK(r.diffuse == glm::vec3(m.base_color));
     CHECK(r.specular_f0.g == Approx(0.04f));
     CHECK(r.specular_f1.g == Approx(0.96f));
@@ -71,13 +73,13 @@ TEST_CASE("metallic-roughness comes out as glTF's appendix B says", "[surface]")
   SECTION("specularFactor 0 makes it Lambertian") {
     m.metallic = 0.0f;
     m.specular = 0.0f;
-    const Reflectance r = material_point(one_triangle(m), 0, {0.3f, 0.3f}).reflectance;
+    const Reflectance r = material_at(one_triangle(m), {0.3f, 0.3f}).reflectance;
     CHECK_FALSE(r.has_specular());
     CHECK(r.layer_f0 == 0.0f);
     CHECK(r.layer_f1 == 0.0f);
   }
   SECTION("a metal has its base colour as F0 and no diffuse part") {
-    const Reflectance r = material_point(one_triangle(m), 0, {0.3f, 0.3f}).reflectance;
+    const Reflectance r = material_at(one_triangle(m), {0.3f, 0.3f}).reflectance;
     CHECK_FALSE(r.has_diffuse());
     CHECK(r.specular_f0 == glm::vec3(m.base_color));
     CHECK(r.specular_f0 + r.specular_f1 == glm::vec3(1.0f));
@@ -90,7 +92,7 @@ TEST_CASE("specular-glossiness takes the strongest F0 off its diffuse colour", "
   m.base_color = {0.5f, 0.5f, 0.5f, 1.0f};
   m.specular_color = {0.2f, 0.6f, 0.4f};
   m.glossiness = 0.3f;
-  const Reflectance r = material_point(one_triangle(m), 0, {0.3f, 0.3f}).reflectance;
+  const Reflectance r = material_at(one_triangle(m), {0.3f, 0.3f}).reflectance;
   CHECK(r.diffuse.r == Approx(0.5f * 0.4f));
   CHECK(r.specular_f0 == m.specular_color);
   CHECK(r.alpha == Approx(0.49f));
@@ -99,7 +101,7 @@ TEST_CASE("specular-glossiness takes the strongest F0 off its diffuse colour", "
 TEST_CASE("vertex colours multiply the base colour", "[surface]") {
   Scene scene = one_triangle({});
   scene.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
-  CHECK(material_point(scene, 0, {0.25f, 0.25f}).base_color == glm::vec3(0.5f, 0.25f, 0.25f));
+  CHECK(material_at(scene, {0.25f, 0.25f}).base_color == glm::vec3(0.5f, 0.25f, 0.25f));
 }
 
 TEST_CASE("a normal map turns the shading normal within the tangent frame", "[surface]") {
@@ -113,10 +115,10 @@ TEST_CASE("a normal map turns the shading normal within the tangent frame", "[su
   scene.images[0].texels16 = {65535, 32768, 32768, 65535};
   scene.tangents.assign(3, {0.0f, 1.0f, 0.0f, -1.0f});
   const glm::vec3 oblique = glm::normalize(glm::vec3(1.0f, 1.0f, 1.0f));
-  CHECK(glm::distance(surface_point(scene, hit_at(0.3f, 0.3f), oblique).shading_normal, glm::vec3(0, 1, 0)) < 1e-4f);
+  CHECK(glm::distance(Surfaces(scene).point(hit_at(0.3f, 0.3f), oblique).shading_normal, glm::vec3(0, 1, 0)) < 1e-4f);
   scene.images[0].texels16 = {32768, 65535, 32768, 65535};
   // w cross(n, t) = -cross(z, y) = x
-  CHECK(glm::distance(surface_point(scene, hit_at(0.3f, 0.3f), oblique).shading_normal, glm::vec3(1, 0, 0)) < 1e-4f);
+  CHECK(glm::distance(Surfaces(scene).point(hit_at(0.3f, 0.3f), oblique).shading_normal, glm::vec3(1, 0, 0)) < 1e-4f);
 }
 
 TEST_CASE("a mask's coverage is alpha against the cutoff", "[surface]") {
@@ -125,7 +127,7 @@ TEST_CASE("a mask's coverage is alpha against the cutoff", "[surface]") {
   m.alpha_cutoff = 0.5f;
   m.base_color.a = 0.49f;
   CHECK_FALSE(covered(one_triangle(m), 0, {0.3f, 0.3f}));
-  CHECK(material_point(one_triangle(m), 0, {0.3f, 0.3f}).opacity == 0.0f);
+  CHECK(material_at(one_triangle(m), {0.3f, 0.3f}).opacity == 0.0f);
   m.base_color.a = 0.5f;
   CHECK(covered(one_triangle(m), 0, {0.3f, 0.3f}));
   m.alpha_mode = AlphaMode::opaque;
