@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "image/image.h"
-#include "reference/warp.h"
 
 namespace voxref {
 
@@ -16,30 +15,17 @@ namespace {
 // and what a lobe gives in one direction may be far more than its share.
 constexpr float least_share = 0.1f;
 
-float specular_share(const SurfacePoint& point, float n_out) {
-  const Reflectance& reflectance = point.reflectance;
-  if (!reflectance.has_specular()) return 0.0f;
+}  // namespace
+
+/// Where there is a specular lobe.
+float Bsdf::specular_share() const {
+  const Reflectance& reflectance = point_.reflectance;
   if (!reflectance.has_diffuse()) return 1.0f;
+  const float n_out = glm::dot(point_.shading_normal, out_);
   const float specular = luminance(specular_albedo(reflectance, n_out));
   const float diffuse = luminance(diffuse_albedo(reflectance, n_out));
   const float share = specular / (specular + diffuse);
   return std::isfinite(share) ? std::clamp(share, least_share, 1.0f - least_share) : 0.5f;
-}
-
-}  // namespace
-
-Bsdf::Bsdf(const SurfacePoint& point, const glm::vec3& out)
-    : point_(point),
-      out_(out),
-      specular_share_(specular_share(point, glm::dot(point.shading_normal, out))),
-      lambertian_(specular_share_ == 0.0f && point.reflectance.layer_f0 == 0.0f && point.reflectance.layer_f1 == 0.0f) {
-}
-
-glm::vec3 Bsdf::value(const glm::vec3& in) const {
-  const float cosine = glm::dot(point_.shading_normal, in);
-  if (cosine <= 0.0f || glm::dot(point_.geometric_normal, in) <= 0.0f) return glm::vec3(0.0f);
-  if (lambertian_) return cosine * std::numbers::inv_pi_v<float> * point_.reflectance.diffuse;
-  return cosine * evaluate(point_.reflectance, point_.shading_normal, out_, in);
 }
 
 // Density of reflecting `out` in a visible normal: G1 D (o.h) / o.n, over the Jacobian 4 (o.h) of the reflection (Heitz
@@ -62,17 +48,9 @@ float Bsdf::pdf(const glm::vec3& in) const {
   return density;
 }
 
-std::optional<BsdfSample> Bsdf::sample(float choice, const glm::vec2& u) const {
+std::optional<BsdfSample> Bsdf::sample_lobes(float choice, const glm::vec2& u) const {
   const Frame frame(point_.shading_normal);
   BsdfSample sample;
-  if (lambertian_) {  // most surfaces: albedo / pi x cosine over cosine / pi is the albedo
-    const glm::vec3 local = cosine_hemisphere(u);
-    sample.in = frame.to_world(local);
-    sample.weight = point_.reflectance.diffuse;
-    sample.pdf = local.z * std::numbers::inv_pi_v<float>;
-    if (sample.pdf <= 0.0f || glm::dot(point_.geometric_normal, sample.in) <= 0.0f) return std::nullopt;
-    return sample;
-  }
   if (choice < specular_share_) {
     const glm::vec3 half = frame.to_world(visible_ggx_normal(frame.to_local(out_), point_.reflectance.alpha, u));
     sample.in = glm::normalize(2.0f * glm::dot(out_, half) * half - out_);

@@ -142,6 +142,11 @@ std::optional<PunctualSample> LightSampler::sample_punctual(const glm::vec3& poi
     const Illumination light = illuminate(scene_.lights[chosen], point);
     return PunctualSample{light.to_light, light.distance, light.irradiance / punctual_.probability(chosen)};
   }
+  if (count == 1) {
+    const Illumination light = illuminate(scene_.lights[0], point);
+    if (glm::dot(normal, light.to_light) <= 0.0f) return std::nullopt;
+    return PunctualSample{light.to_light, light.distance, light.irradiance};
+  }
   std::array<Illumination, few_lights> lights;
   std::array<float, few_lights> weights{};
   float total = 0.0f;

@@ -29,9 +29,9 @@ struct PathResult {
   double seconds = 0;                       ///< of the render loop
   uint64_t rays = 0;                        ///< closest-hit plus occlusion rays of the render loop
   uint64_t closest_rays = 0, occlusion_rays = 0;
-  uint64_t nonfinite = 0;                   ///< contributions that were NaN or infinite; they are left out of the sums
-  std::string first_nonfinite;              ///< "pixel (x, y) sample n", empty when there is none
-  bool interrupted = false;                 ///< stopped by the caller: `spp` is what there was time for
+  uint64_t nonfinite = 0;       ///< contributions that were NaN or infinite; they are left out of the sums
+  std::string first_nonfinite;  ///< "pixel (x, y) sample n", empty when there is none
+  bool interrupted = false;     ///< stopped by the caller: `spp` is what there was time for
 };
 
 /// Path traces the view: unidirectional, next-event estimation with multiple importance sampling, Russian roulette. The

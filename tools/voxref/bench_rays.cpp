@@ -69,11 +69,11 @@ glm::vec3 cosine_direction(const glm::vec3& normal, std::mt19937_64& random) {
   return frame_around(normal) * local;
 }
 
-/// From `point` to a light picked at random; to some other surface point where there is no light.
+/// From a point to a light picked at random; there must be one.
 Ray shadow_ray(const Scene& scene, const Caster& caster, const AreaSampler::Sample& from, const AreaSampler& emitters,
                std::mt19937_64& random) {
   const size_t choices = scene.lights.size() + (emitters.empty() ? 0 : 1);
-  const size_t chosen = choices == 0 ? 0 : random() % choices;
+  const size_t chosen = random() % choices;
   if (chosen < scene.lights.size() && scene.lights[chosen].type == LightType::directional)
     return caster.leave(from.point, from.normal, -scene.lights[chosen].direction);
   const glm::vec3 target = chosen < scene.lights.size() ? scene.lights[chosen].position : emitters(random).point;
@@ -85,32 +85,37 @@ Ray shadow_ray(const Scene& scene, const Caster& caster, const AreaSampler::Samp
 
 }  // namespace
 
-std::vector<Ray> incoherent_rays(const Scene& scene, const Caster& caster, size_t count) {
+std::vector<BareRay> incoherent_rays(const Scene& scene, const Caster& caster, size_t count, double occlusion_share) {
   const AreaSampler everywhere = sampler_of(scene, false);
   if (everywhere.empty()) throw Error(scene.file, "has no surface to cast rays from");
-  const bool dark = scene.lights.empty() && !scene.has_emission();
-  const AreaSampler emitters = sampler_of(scene, !dark);
+  const AreaSampler emitters = sampler_of(scene, true);
+  if (occlusion_share > 0 && scene.lights.empty() && emitters.empty())
+    throw Error(scene.file, "has no light to cast rays to");
   std::mt19937_64 random(1);
-  std::vector<Ray> rays;
+  std::vector<BareRay> rays;
   rays.reserve(count);
-  while (rays.size() + 1 < count) {
-    const AreaSampler::Sample from = everywhere(random);
-    rays.push_back(caster.leave(from.point, from.normal, cosine_direction(from.normal, random)));
-    rays.push_back(shadow_ray(scene, caster, from, emitters, random));
+  AreaSampler::Sample from = everywhere(random);
+  for (size_t i = 0; i < count; ++i) {
+    const double before = occlusion_share * static_cast<double>(i);
+    if (std::floor(before + occlusion_share) > std::floor(before)) {
+      rays.push_back({shadow_ray(scene, caster, from, emitters, random), true});
+    } else {
+      from = everywhere(random);
+      rays.push_back({caster.leave(from.point, from.normal, cosine_direction(from.normal, random)), false});
+    }
   }
   return rays;
 }
 
-double cast_seconds(const Caster& caster, const std::vector<Ray>& rays, uint64_t count) {
+double cast_seconds(const Caster& caster, const std::vector<BareRay>& rays, uint64_t count) {
   constexpr size_t grain = 4096;
   std::atomic<uint64_t> hits = 0;  // so that the compiler cannot leave the casting out
   const auto begin = std::chrono::steady_clock::now();
   parallel_for(count, grain, [&](size_t first, size_t last) {
     uint64_t found = 0;
     for (size_t i = first; i < last; ++i) {
-      const Ray& ray = rays[i % rays.size()];
-      found +=
-          i % 2 == 0 ? static_cast<uint64_t>(bool(caster.closest(ray))) : static_cast<uint64_t>(caster.occluded(ray));
+      const auto& [ray, occlusion] = rays[i % rays.size()];
+      found += static_cast<uint64_t>(occlusion ? caster.occluded(ray) : static_cast<bool>(caster.closest(ray)));
     }
     hits.fetch_add(found, std::memory_order_relaxed);
   });

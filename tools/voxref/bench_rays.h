@@ -7,11 +7,19 @@
 
 namespace voxref {
 
+struct BareRay {
+  Ray ray;
+  bool occlusion = false;  ///< for Caster::occluded() instead of closest()
+};
+
 /// Incoherent rays like those of a path tracer, made before any clock runs: from points spread evenly over the
-/// surfaces, one ray with a cosine-distributed direction (for closest()) and one to a light (for occluded()) in turn.
-std::vector<Ray> incoherent_rays(const Scene& scene, const Caster& caster, size_t count);
+/// surfaces, rays with a cosine-distributed direction (for closest()) and rays to a light (for occluded()), evenly
+/// mixed.
+/// @param occlusion_share of all rays, in [0,1) @throws Error when the scene has no surface, or no light for a share
+/// above 0
+std::vector<BareRay> incoherent_rays(const Scene& scene, const Caster& caster, size_t count, double occlusion_share);
 
 /// Casts `count` rays, going round through `rays`, and does nothing else. @return seconds
-double cast_seconds(const Caster& caster, const std::vector<Ray>& rays, uint64_t count);
+double cast_seconds(const Caster& caster, const std::vector<BareRay>& rays, uint64_t count);
 
 }  // namespace voxref
