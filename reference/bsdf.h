@@ -56,11 +56,12 @@ class Bsdf {
   std::optional<BsdfSample> sample_lobes(float choice, const glm::vec2& u) const;
   std::optional<BsdfSample> sample_lambertian(const glm::vec2& u) const {
     const glm::vec3 local = cosine_hemisphere(u);
-    BsdfSample sample;
-    sample.in = Frame(point_.shading_normal).to_world(local);
-    sample.weight = point_.reflectance.diffuse;  // albedo / pi x cosine over cosine / pi
-    sample.pdf = local.z * std::numbers::inv_pi_v<float>;
-    if (sample.pdf <= 0.0f || glm::dot(point_.geometric_normal, sample.in) <= 0.0f) return std::nullopt;
+    // Filled in place: a copy of what was just written in pieces makes the processor wait.
+    std::optional<BsdfSample> sample(std::in_place);
+    sample->in = Frame(point_.shading_normal).to_world(local);
+    sample->weight = point_.reflectance.diffuse;  // albedo / pi x cosine over cosine / pi
+    sample->pdf = local.z * std::numbers::inv_pi_v<float>;
+    if (local.z <= 0.0f || glm::dot(point_.geometric_normal, sample->in) <= 0.0f) sample.reset();
     return sample;
   }
 

@@ -145,7 +145,11 @@ std::optional<PunctualSample> LightSampler::sample_punctual(const glm::vec3& poi
   if (count == 1) {
     const Illumination light = illuminate(scene_.lights[0], point);
     if (glm::dot(normal, light.to_light) <= 0.0f) return std::nullopt;
-    return PunctualSample{light.to_light, light.distance, light.irradiance};
+    std::optional<PunctualSample> sample(std::in_place);
+    sample->to_light = light.to_light;
+    sample->distance = light.distance;
+    sample->irradiance = light.irradiance;
+    return sample;
   }
   std::array<Illumination, few_lights> lights;
   std::array<float, few_lights> weights{};

@@ -16,7 +16,7 @@ Illumination illuminate(const Light& light, const glm::vec3& point) {
   if (!(distance_squared > 0.0f)) return {};
   Illumination result;
   result.distance = std::sqrt(distance_squared);
-  const float inverse = 1.0f / result.distance;  // one division instead of six: half of this function's time
+  const float inverse = 1.0f / result.distance;  // one division instead of six
   result.to_light = inverse * offset;
   result.irradiance = (inverse * inverse) * light.intensity;
   if (light.type == LightType::spot) {

@@ -57,6 +57,34 @@ TEST_CASE("interpolated normals are unit and bent to face the viewer", "[surface
   CHECK(glm::dot(point.shading_normal, grazing) > 0.0f);
 }
 
+TEST_CASE("what is computed once over a flat, plain triangle is what interpolation and textures give", "[surface]") {
+  Material plain;
+  plain.base_color = {0.8f, 0.4f, 0.2f, 1.0f};
+  plain.emission = {1.0f, 2.0f, 3.0f};
+  const Scene scene = one_triangle(plain);
+  REQUIRE(Materials(scene).constant(0));
+  Scene textured = one_triangle(plain);  // with a white texel, and normals whose difference is below what float shows
+  textured.uv[0].assign(3, glm::vec2(0.5f));
+  textured.images.resize(1);
+  textured.images[0].width = textured.images[0].height = 1;
+  textured.images[0].texels8 = {255, 255, 255, 255};
+  textured.materials[0].base_color_texture.image = 0;
+  textured.normals[1].x = 1e-20f;
+  REQUIRE_FALSE(Materials(textured).constant(0));
+  const glm::vec3 oblique = glm::normalize(glm::vec3(1.0f, -0.5f, 0.3f));
+  for (const glm::vec3& viewer : {oblique, -oblique}) {
+    const SurfacePoint once = Surfaces(scene).point(hit_at(0.2f, 0.7f), viewer);
+    const SurfacePoint each = Surfaces(textured).point(hit_at(0.2f, 0.7f), viewer);
+    CHECK(once.position == each.position);
+    CHECK(once.geometric_normal == each.geometric_normal);
+    // Interpolating three equal normals rounds twice before it is made unit again.
+    CHECK(glm::distance(once.shading_normal, each.shading_normal) < 3e-7f);
+    CHECK(once.emission == each.emission);
+    CHECK(once.reflectance.diffuse == each.reflectance.diffuse);
+    CHECK(once.reflectance.specular_f0 == each.reflectance.specular_f0);
+  }
+}
+
 TEST_CASE("metallic-roughness comes out as glTF's appendix B says", "[surface]") {
   Material m;
   m.base_color = {0.8f, 0.4f, 0.2f, 1.0f};
