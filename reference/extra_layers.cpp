@@ -13,21 +13,22 @@ std::vector<std::string> ExtraLayers::names() const {
   return names;
 }
 
-ExtraTracer::ExtraTracer(const Scene& scene, const Caster& caster, const glm::vec3& background,
-                         std::optional<int> max_depth, const ExtraLayers& layers)
+ExtraTracer::ExtraTracer(const Scene& scene, const Surfaces& surfaces, const Caster& caster,
+                         const glm::vec3& background, std::optional<int> max_depth, const ExtraLayers& layers)
     : layers_(layers) {
   const int most = max_depth.value_or(std::numeric_limits<int>::max());
   cut_.reserve(static_cast<size_t>(layers.bounces));
-  for (int k = 1; k <= layers.bounces; ++k) cut_.emplace_back(scene, caster, background, std::min(k + 1, most));
-  if (layers.irradiance) onwards_.emplace(scene, caster, background, max_depth);
+  for (int k = 1; k <= layers.bounces; ++k)
+    cut_.emplace_back(scene, surfaces, caster, background, std::min(k + 1, most));
+  if (layers.irradiance) onwards_.emplace(scene, surfaces, caster, background, max_depth);
 }
 
 void ExtraTracer::trace(const std::optional<PathVertex>& seen, const Sampler& sampler, std::span<glm::dvec3> sums,
-                        uint64_t& rays) const {
-  PathCounts counts;  // what is not finite here was not so in the path itself, and is counted there
+                        PathCounts& counts) const {
+  PathCounts own;  // what is not finite here was not so in the path itself, and is counted there
   glm::dvec3 shorter(0.0);
   for (size_t k = 0; k < cut_.size(); ++k) {
-    const glm::dvec3 longer(cut_[k].trace(seen, sampler, counts).indirect);
+    const glm::dvec3 longer(cut_[k].trace(seen, sampler, own).indirect);
     sums[k] += longer - shorter;
     shorter = longer;
   }
@@ -35,10 +36,11 @@ void ExtraTracer::trace(const std::optional<PathVertex>& seen, const Sampler& sa
     std::optional<PathVertex> white = seen;
     white->surface.reflectance = Reflectance{};
     white->surface.reflectance.diffuse = glm::vec3(1.0f);
-    const Layers scattered = onwards_->trace(white, sampler, counts);
+    const Layers scattered = onwards_->trace(white, sampler, own);
     sums.back() += std::numbers::pi * (glm::dvec3(scattered.direct) + glm::dvec3(scattered.indirect));
   }
-  rays += counts.rays;
+  counts.closest_rays += own.closest_rays;
+  counts.occlusion_rays += own.occlusion_rays;
 }
 
 }  // namespace voxref

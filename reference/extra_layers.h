@@ -26,14 +26,14 @@ struct ExtraLayers {
 class ExtraTracer {
  public:
   /// @param max_depth as PathOptions::max_depth
-  ExtraTracer(const Scene& scene, const Caster& caster, const glm::vec3& background, std::optional<int> max_depth,
-              const ExtraLayers& layers);
+  ExtraTracer(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
+              std::optional<int> max_depth, const ExtraLayers& layers);
 
   size_t count() const { return layers_.count(); }
   /// Adds one sample to `sums`, count() of them.
-  /// @param sampler the one of the path @param rays is added to
+  /// @param sampler the one of the path @param counts its rays are added to
   void trace(const std::optional<PathVertex>& seen, const Sampler& sampler, std::span<glm::dvec3> sums,
-             uint64_t& rays) const;
+             PathCounts& counts) const;
 
  private:
   ExtraLayers layers_;

@@ -54,11 +54,11 @@ struct Integrator::State {
   }
 };
 
-Integrator::Integrator(const Scene& scene, const Caster& caster, const glm::vec3& background,
+Integrator::Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
                        std::optional<int> max_depth)
-    : surfaces_(scene),
+    : surfaces_(surfaces),
       caster_(caster),
-      lights_(scene, surfaces_.materials()),
+      lights_(scene, surfaces.materials()),
       background_(background),
       max_depth_(max_depth.value_or(std::numeric_limits<int>::max())),
       light_can_be_hit_(scene.has_emission() || background != glm::vec3(0.0f)) {}

@@ -42,7 +42,8 @@ struct PathCounts {
 class Integrator {
  public:
   /// @param max_depth as PathOptions::max_depth
-  Integrator(const Scene& scene, const Caster& caster, const glm::vec3& background, std::optional<int> max_depth);
+  Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
+             std::optional<int> max_depth);
 
   /// Sets `vertex` to what a ray (unit direction) finds; none where it leaves the scene. In place: copying what was
   /// just written costs more than the copy.
@@ -57,7 +58,7 @@ class Integrator {
   void add_emitters(State& state, const class Bsdf& bsdf) const;
   bool scatter(State& state, const class Bsdf& bsdf) const;
 
-  Surfaces surfaces_;
+  const Surfaces& surfaces_;
   const Caster& caster_;
   LightSampler lights_;
   glm::vec3 background_;

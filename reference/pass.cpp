@@ -56,8 +56,9 @@ PassRenderer::PassRenderer(const Scene& scene, const Caster& caster, const View&
                            uint64_t seed, const ExtraLayers& extra)
     : view_(view),
       rays_(view),
-      integrator_(scene, caster, view.background, max_depth),
-      extra_(scene, caster, view.background, max_depth, extra),
+      surfaces_(scene),
+      integrator_(scene, surfaces_, caster, view.background, max_depth),
+      extra_(scene, surfaces_, caster, view.background, max_depth, extra),
       seed_(seed),
       columns_(static_cast<size_t>((view.width + tile_side - 1) / tile_side)),
       rows_(static_cast<size_t>((view.height + tile_side - 1) / tile_side)),
@@ -104,7 +105,7 @@ void PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts& coun
       integrator_.cast(rays_(glm::vec2(x, y) + (center ? glm::vec2(0.5f) : sampler.get_2d(0))), seen, counts.paths);
     const uint64_t nonfinite_before = counts.paths.nonfinite;
     sum.add(integrator_.trace(seen, sampler, counts.paths));
-    if (!extra.empty()) extra_.trace(seen, sampler, extra, counts.paths.rays);
+    if (!extra.empty()) extra_.trace(seen, sampler, extra, counts.paths);
     if (seen) sum.add(seen->surface, glm::dot(seen->surface.position - rays_.eye(), rays_.forward()));
     if (counts.paths.nonfinite != nonfinite_before)
       counts.first_nonfinite = std::min(counts.first_nonfinite, SamplePlace{pixel, pass.samples_before + i});

@@ -54,6 +54,7 @@ class PassRenderer {
  public:
   PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth, uint64_t seed,
                const ExtraLayers& extra);
+  PassRenderer(const PassRenderer&) = delete;  // its parts refer to one another
 
   /// Renders one pass; the same bits whatever the number of threads. @param report takes the finished fraction, from
   /// any thread. @returns nothing when the caller cancelled: batches() are then incomplete
@@ -72,6 +73,7 @@ class PassRenderer {
 
   const View& view_;
   RayGenerator rays_;
+  Surfaces surfaces_;
   Integrator integrator_;
   ExtraTracer extra_;
   uint64_t seed_;
