@@ -1,6 +1,8 @@
 #include "pipeline.h"
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 
 #include "catch.h"
 #include "make_scenes/builders.h"
@@ -109,13 +111,31 @@ TEST_CASE("Indirect light on the Cornell box with a point light agrees with the 
   const Scene scene = cornell_box(CornellLight::point);
   const Caster caster(scene);
   const View view = view_of(scene, 48);
-  const Image cones = cone_trace(scene, caster, view, at(64)).image.image;
+  const Image cones = cone_trace(scene, caster, view, at(128)).image.image;
   PathOptions options;
   options.spp = 64;
   const Image paths = path_trace(scene, caster, view, options).image;
   const double ratio =
       (mean_luminance(cones, "diffuse") + mean_luminance(cones, "specular")) / mean_luminance(paths, "indirect");
-  // Six cones at 64 voxels gather about a sixth too much: coarse texels make surfaces look half a texel thicker.
+  // Six cones at 128 voxels gather about a sixth too much: coarse texels make surfaces look half a texel thicker.
   CHECK(ratio > 0.8);
   CHECK(ratio < 1.25);
+}
+
+TEST_CASE("Closed rooms with oblique walls lose no more light than measured", "[pipeline]") {
+  // Radiance is 1 / (1 - 0.5) = 2 times the emission (furnace), 0.5 / pi times 2 W/m^2 (sphere). Where a wall crosses
+  // texels at an angle, the filter takes the shares of two texels behind each other for independent, and wide cones
+  // read such texels: measured are 0.92 of the truth in a turned cube and 0.89 in a sphere, where the aligned cube has
+  // 0.987.
+  const auto share = [](const Scene& scene, double truth) {
+    const Caster caster(scene);
+    return mean_luminance(cone_trace(scene, caster, view_of(scene, 16), at(64)).image.image, "") / truth;
+  };
+  Scene turned = furnace(0.5f);
+  const glm::mat3 turn(glm::rotate(glm::mat4(1.0f), 0.6f, glm::normalize(glm::vec3(1.0f, 2.0f, 3.0f))));
+  for (glm::vec3& position : turned.positions) position = turn * position;
+  for (glm::vec3& normal : turned.normals) normal = turn * normal;
+  CHECK(share(furnace(0.5f), 2.0) > 0.98);
+  CHECK(share(turned, 2.0) > 0.90);
+  CHECK(share(sphere_furnace(0.5f, 4), 1.0 / std::numbers::pi) > 0.87);
 }

@@ -17,15 +17,17 @@ namespace {
 
 /// A voxel's surface as a light sees it.
 struct Facing {
-  float cosine = 0.0f;   ///< mean |n.l|
-  glm::vec3 side{0.0f};  ///< unit, off the surface on the lit side
+  float cosine = 0.0f;   ///< mean of max(n.l, 0)
+  glm::vec3 side{0.0f};  ///< unit, off the surface on the side that is lit
 };
 
+// Light from behind counts as none: a voxel has one radiance for all directions, and what shone on the outside of a
+// wall would glow inside the room.
 Facing facing(const glm::vec3& mean_normal, const glm::vec3& to_light) {
   const float length = glm::length(mean_normal);
   if (length < two_sided_length) return {0.5f, to_light};
-  const float cosine = glm::dot(mean_normal / length, to_light);
-  return {std::abs(cosine), (cosine < 0.0f ? -1.0f : 1.0f) / length * mean_normal};
+  const glm::vec3 normal = mean_normal / length;
+  return {std::max(glm::dot(normal, to_light), 0.0f), normal};
 }
 
 // Where a shadow ray starts. At the centroid itself it could not: at a convex edge or corner the centroid lies inside

@@ -20,8 +20,8 @@ struct ShadeOptions {
 };
 
 /// Outgoing radiance of each occupied voxel, W/(sr m^2), in SurfaceGrid's order: emission + albedo/pi x irradiance x
-/// visibility of the punctual lights, at the voxel's centroid, with the unit mean normal. Both sides of a surface
-/// scatter, so |n.l| counts; where opposite normals cancel (mean normal shorter than two_sided_length) the voxel is lit
+/// visibility of the punctual lights, at the voxel's centroid, with max(n.l, 0) of the unit mean normal: a voxel stands
+/// for its surface's front. Where opposite normals cancel (mean normal shorter than two_sided_length) the voxel is lit
 /// as a sheet that faces the light with the mean |cos| of a random orientation, 1/2. Shadow rays start half a voxel off
 /// the surface. Spec section 3 (radiometric).
 /// @param caster may be null unless shadow is `rays`

@@ -108,12 +108,12 @@ TEST_CASE("twice the light gives exactly twice the radiance, and lights add up",
   for (const glm::vec3& radiance : with({})) CHECK(radiance == glm::vec3(0));
 }
 
-TEST_CASE("a surface is lit from behind as from the front", "[shade]") {
+TEST_CASE("light from behind a surface does not show on its front", "[shade]") {
   Scene scene = scene_of(floor_at(8.5f, 2.0f, 14.0f));
   scene.lights = {point_light("above", {8, 14, 8}, glm::vec3(100))};
-  const auto above = shaded(scene, grid16).radiance;
+  for (const glm::vec3& radiance : shaded(scene, grid16).radiance) CHECK(radiance.r > 0.0f);
   scene.lights = {point_light("below", {8, 3, 8}, glm::vec3(100))};
-  CHECK(shaded(scene, grid16).radiance == above);
+  for (const glm::vec3& radiance : shaded(scene, grid16).radiance) CHECK(radiance == glm::vec3(0.0f));
 }
 
 TEST_CASE("emission is added, and shines without light", "[shade]") {
