@@ -125,6 +125,22 @@ Image Film::image() const {
   return image;
 }
 
+void Film::save(StateWriter& writer) const {
+  writer.value(samples_);
+  writer.value(passes_);
+  writer.value(square_samples_);
+  writer.values(std::span(pixels_));
+  writer.values(std::span(extra_));
+}
+
+void Film::load(StateReader& reader) {
+  reader.value(samples_);
+  reader.value(passes_);
+  reader.value(square_samples_);
+  reader.values(std::span(pixels_));
+  reader.values(std::span(extra_));
+}
+
 void Film::add_extra_layers(Image& image) const {
   const std::vector<std::string> names = extra_layers_.names();
   for (size_t layer = 0; layer < names.size(); ++layer) {

@@ -40,6 +40,10 @@ class Film {
   /// errors, and what the camera sees, as means over the samples that hit a surface; then the extra layers.
   Image image() const;
 
+  /// All sums, for a checkpoint.
+  void save(StateWriter& writer) const;
+  void load(StateReader& reader);
+
  private:
   enum Quantity { red, green, blue, total_y, indirect_y, quantity_count };
   struct Moments {

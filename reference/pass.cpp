@@ -1,7 +1,6 @@
 #include "reference/pass.h"
 
 #include <algorithm>
-#include <atomic>
 #include <glm/geometric.hpp>
 
 #include "parallel.h"
@@ -10,9 +9,6 @@
 namespace voxref {
 
 namespace {
-
-// Tiles of 16 x 16 pixels keep neighbouring rays, which meet the same triangles, on one core.
-constexpr int tile_side = 16;
 
 /// Sums over a pass's samples, in float64 because a pass may hold many.
 struct PixelSum {
@@ -53,52 +49,82 @@ void PassCounts::add(const PassCounts& other) {
 }
 
 PassRenderer::PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth,
-                           uint64_t seed, const ExtraLayers& extra)
+                           uint64_t seed, const ExtraLayers& extra, const Part& part)
     : view_(view),
       rays_(view),
       surfaces_(scene),
       integrator_(scene, surfaces_, caster, view.background, max_depth),
       extra_(scene, surfaces_, caster, view.background, max_depth, extra),
       seed_(seed),
-      columns_(static_cast<size_t>((view.width + tile_side - 1) / tile_side)),
-      rows_(static_cast<size_t>((view.height + tile_side - 1) / tile_side)),
+      grid_(view.width, view.height),
+      tiles_(grid_.tiles_of(part)),
       batches_(static_cast<size_t>(view.width) * static_cast<size_t>(view.height)),
-      extra_batches_(batches_.size() * extra.count()) {}
+      extra_batches_(batches_.size() * extra.count()),
+      done_(tiles_.size(), 1),
+      counts_(tiles_.size()),
+      finished_(tiles_.size()) {}
 
-std::optional<PassCounts> PassRenderer::render(const Pass& pass, const Progress& progress,
-                                               const std::function<void(double)>& report) {
-  std::vector<PassCounts> counts(columns_ * rows_);
-  std::atomic<size_t> finished = 0;
-  parallel_for(counts.size(), 1, [&](size_t tile, size_t) {
-    if (!render_tile(tile, pass, progress, counts[tile])) return;
-    report(static_cast<double>(++finished) / static_cast<double>(counts.size()));
+void PassRenderer::begin(const Pass& pass) {
+  pass_ = pass;
+  std::fill(done_.begin(), done_.end(), uint8_t{0});
+  finished_ = 0;
+}
+
+bool PassRenderer::advance(const Progress& progress, const std::function<bool()>& pause,
+                           const std::function<void(double)>& report) {
+  const size_t before = finished_;
+  parallel_for(tiles_.size(), 1, [&](size_t i, size_t) {
+    // However often it is paused, some tile is finished each time.
+    if (done_[i] || (finished_ != before && pause())) return;
+    PassCounts counts;
+    if (!render_tile(tiles_[i], progress, counts)) return;
+    counts_[i] = counts;
+    done_[i] = 1;
+    report(static_cast<double>(++finished_) / static_cast<double>(tiles_.size()));
   });
-  if (finished != counts.size()) return std::nullopt;
+  return finished();
+}
+
+PassCounts PassRenderer::counts() const {
   PassCounts sum;
-  for (const PassCounts& tile : counts) sum.add(tile);
+  for (const PassCounts& tile : counts_) sum.add(tile);
   return sum;
 }
 
-bool PassRenderer::render_tile(size_t tile, const Pass& pass, const Progress& progress, PassCounts& counts) {
-  const int left = static_cast<int>(tile % columns_) * tile_side;
-  const int top = static_cast<int>(tile / columns_) * tile_side;
-  for (int y = top; y < std::min(top + tile_side, view_.height); ++y)
-    for (int x = left; x < std::min(left + tile_side, view_.width); ++x) {
-      if (progress.cancelled()) return false;
-      render_pixel(x, y, pass, counts);
-    }
-  return true;
+void PassRenderer::save(StateWriter& writer) const {
+  writer.value(pass_);
+  writer.values(std::span(done_));
+  writer.values(std::span(counts_));
+  writer.values(std::span(batches_));
+  writer.values(std::span(extra_batches_));
 }
 
-void PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts& counts) {
+void PassRenderer::load(StateReader& reader) {
+  reader.value(pass_);
+  reader.values(std::span(done_));
+  reader.values(std::span(counts_));
+  reader.values(std::span(batches_));
+  reader.values(std::span(extra_batches_));
+  finished_ = static_cast<size_t>(std::count(done_.begin(), done_.end(), uint8_t{1}));
+}
+
+bool PassRenderer::render_tile(size_t tile, const Progress& progress, PassCounts& counts) {
+  return grid_.visit_pixels(tile, [&](int x, int y) {
+    if (progress.cancelled()) return false;
+    render_pixel(x, y, counts);
+    return true;
+  });
+}
+
+void PassRenderer::render_pixel(int x, int y, PassCounts& counts) {
   const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x);
   const uint64_t key =
-      randomization_key(seed_, static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(pass.number));
+      randomization_key(seed_, static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(pass_.number));
   const bool center = view_.pixel == PixelSampling::center;
   PixelSum sum;
   std::vector<glm::dvec3> extra(extra_.count(), glm::dvec3(0.0));
   std::optional<PathVertex> seen;
-  for (int i = 0; i < pass.samples; ++i) {
+  for (int i = 0; i < pass_.samples; ++i) {
     const Sampler sampler(key, static_cast<uint32_t>(i));
     // All samples of a pixel's centre see the same point.
     if (i == 0 || !center)
@@ -108,11 +134,11 @@ void PassRenderer::render_pixel(int x, int y, const Pass& pass, PassCounts& coun
     if (!extra.empty()) extra_.trace(seen, sampler, extra, counts.paths);
     if (seen) sum.add(seen->surface, glm::dot(seen->surface.position - rays_.eye(), rays_.forward()));
     if (counts.paths.nonfinite != nonfinite_before)
-      counts.first_nonfinite = std::min(counts.first_nonfinite, SamplePlace{pixel, pass.samples_before + i});
+      counts.first_nonfinite = std::min(counts.first_nonfinite, SamplePlace{pixel, pass_.samples_before + i});
   }
-  batches_[pixel] = sum.mean(pass.samples);
+  batches_[pixel] = sum.mean(pass_.samples);
   for (size_t i = 0; i < extra.size(); ++i)
-    extra_batches_[pixel * extra.size() + i] = extra[i] / static_cast<double>(pass.samples);
+    extra_batches_[pixel * extra.size() + i] = extra[i] / static_cast<double>(pass_.samples);
 }
 
 }  // namespace voxref

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
@@ -9,8 +10,10 @@
 #include <vector>
 
 #include "progress.h"
+#include "reference/checkpoint.h"
 #include "reference/extra_layers.h"
 #include "reference/integrator.h"
+#include "reference/tiles.h"
 #include "scene/camera.h"
 
 namespace voxref {
@@ -48,28 +51,38 @@ struct Pass {
   int samples_before = 0;  ///< taken by earlier passes
 };
 
-/// Renders an image pass by pass. A pass is one randomization of the sampler at each pixel: its samples are stratified
-/// among each other and independent of all other passes and pixels. Keeps references to its arguments.
+/// Renders an image, or a part of one, pass by pass. A pass is one randomization of the sampler at each pixel: its
+/// samples are stratified among each other and independent of all other passes and pixels. Keeps references to its
+/// arguments.
 class PassRenderer {
  public:
   PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth, uint64_t seed,
-               const ExtraLayers& extra);
+               const ExtraLayers& extra = {}, const Part& part = {});
   PassRenderer(const PassRenderer&) = delete;  // its parts refer to one another
 
-  /// Renders one pass; the same bits whatever the number of threads. @param report takes the finished fraction, from
-  /// any thread. @returns nothing when the caller cancelled: batches() are then incomplete
-  std::optional<PassCounts> render(const Pass& pass, const Progress& progress,
-                                   const std::function<void(double)>& report);
+  void begin(const Pass& pass);
+  /// Renders what is left of the pass; the same bits whatever the number of threads, and however often it is called.
+  /// @param pause asked between tiles, from any thread: whether to return soon @param report takes the finished
+  /// fraction, from any thread. @returns whether the pass is finished; false when it was paused or cancelled
+  bool advance(const Progress& progress, const std::function<bool()>& pause, const std::function<void(double)>& report);
+  bool finished() const { return finished_ == tiles_.size(); }
 
-  /// One per pixel, row by row, of the pass that was rendered last.
+  // Of the pass that was finished last.
+  const Pass& pass() const { return pass_; }
+  PassCounts counts() const;
+  /// One per pixel, row by row; zero outside the part.
   std::span<const PixelBatch> batches() const { return batches_; }
   /// The extra layers' means, as many per pixel as there are.
   std::span<const glm::vec3> extra_batches() const { return extra_batches_; }
 
+  /// The pass under way, for a checkpoint.
+  void save(StateWriter& writer) const;
+  void load(StateReader& reader);
+
  private:
-  /// False when it was cancelled: asked at every pixel, because a tile of many samples may take a minute.
-  bool render_tile(size_t tile, const Pass& pass, const Progress& progress, PassCounts& counts);
-  void render_pixel(int x, int y, const Pass& pass, PassCounts& counts);
+  /// False when it was cancelled: asked at every pixel, because a tile of many samples takes seconds.
+  bool render_tile(size_t tile, const Progress& progress, PassCounts& counts);
+  void render_pixel(int x, int y, PassCounts& counts);
 
   const View& view_;
   RayGenerator rays_;
@@ -77,9 +90,15 @@ class PassRenderer {
   Integrator integrator_;
   ExtraTracer extra_;
   uint64_t seed_;
-  size_t columns_, rows_;  // of tiles
+  TileGrid grid_;
+  std::vector<size_t> tiles_;  // of the part
   std::vector<PixelBatch> batches_;
   std::vector<glm::vec3> extra_batches_;
+
+  Pass pass_;
+  std::vector<uint8_t> done_;       // per tile of the part
+  std::vector<PassCounts> counts_;  // per tile of the part
+  std::atomic<size_t> finished_;    // number of tiles
 };
 
 }  // namespace voxref

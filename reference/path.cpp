@@ -52,6 +52,12 @@ void check(const PathOptions& options, const View& view) {
   if (options.seconds && !(*options.seconds > 0.0)) throw Error("time", "must be above 0 seconds");
   if (options.max_depth && *options.max_depth < 0)
     throw Error("max-depth", std::to_string(*options.max_depth) + " is below 0");
+  if (options.part.index < 1 || options.part.index > options.part.count ||
+      static_cast<size_t>(options.part.count) > TileGrid(view.width, view.height).count())
+    throw Error("part", "must be I/N, I from 1 to N, and N at most the number of tiles of " +
+                            std::to_string(TileGrid::side) + "x" + std::to_string(TileGrid::side) + " pixels");
+  if (options.part.count > 1 && (options.noise || options.seconds))
+    throw Error("part", "needs a number of samples: parts cannot agree on a noise or a time at which to stop");
   if (options.extra.bounces < 0) throw Error("bounces", std::to_string(options.extra.bounces) + " is below 0");
 }
 
@@ -93,46 +99,116 @@ std::string describe(const SamplePlace& place, int width) {
          ") sample " + std::to_string(place.sample);
 }
 
+/// A render under way.
+class Render {
+ public:
+  Render(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options)
+      : view_(view),
+        options_(options),
+        renderer_(scene, caster, view, options.max_depth, options.seed, options.extra, options.part),
+        film_(view.width, view.height, options.extra) {
+    if (options.checkpoint.resume) resume();
+  }
+
+  /// Until the goal is reached or the caller cancels. @throws Interrupted before the first samples
+  PathResult run(const Progress& progress) {
+    bool interrupted = false;
+    while (!interrupted && begin_pass()) {
+      const bool finished = renderer_.advance(
+          progress, [this] { return checkpoint_due(); },
+          [&](double fraction) {
+            progress("path tracing", voxref::finished(options_, now_, fraction * renderer_.pass().samples, seconds()));
+          });
+      if (finished) end_pass();
+      interrupted = progress.cancelled() && (!finished || begin_pass());
+      if (interrupted && now_.passes == 0) throw Interrupted();
+      if (interrupted || checkpoint_due()) save();
+    }
+    return result(interrupted);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// False when there is nothing left to do.
+  bool begin_pass() {
+    if (!renderer_.finished()) return true;
+    const int samples = next_samples(options_, now_, most_samples_of_pass(view_));
+    if (samples > 0) renderer_.begin({now_.passes, samples, now_.samples});
+    return samples > 0;
+  }
+
+  void end_pass() {
+    film_.add(renderer_.batches(), renderer_.pass().samples, renderer_.extra_batches());
+    counts_.add(renderer_.counts());
+    measure();
+  }
+
+  void measure() {
+    now_ = {film_.passes(), film_.samples(), seconds(), now_.noise};
+    if (options_.noise && now_.passes >= least_passes) now_.noise = film_.noise();
+  }
+
+  double seconds() const { return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  bool checkpoint_due() const {
+    return !options_.checkpoint.file.empty() &&
+           std::chrono::duration<double>(Clock::now() - last_save_).count() >= options_.checkpoint.interval;
+  }
+
+  void save() {
+    if (options_.checkpoint.file.empty()) return;
+    write_checkpoint(options_.checkpoint, [this](StateWriter& writer) {
+      writer.value(seconds());
+      writer.value(counts_);
+      film_.save(writer);
+      renderer_.save(writer);
+    });
+    last_save_ = Clock::now();
+  }
+
+  void resume() {
+    if (read_checkpoint(options_.checkpoint, [this](StateReader& reader) {
+          reader.value(seconds_before_);
+          reader.value(counts_);
+          film_.load(reader);
+          renderer_.load(reader);
+        }))
+      measure();
+  }
+
+  PathResult result(bool interrupted) const {
+    PathResult result;
+    result.image = film_.image();
+    result.mean = film_.mean();
+    result.mean_stderr = film_.mean_stderr();
+    result.spp = now_.samples;
+    result.seconds = now_.seconds;
+    result.closest_rays = counts_.paths.closest_rays;
+    result.occlusion_rays = counts_.paths.occlusion_rays;
+    result.rays = result.closest_rays + result.occlusion_rays;
+    result.nonfinite = counts_.paths.nonfinite;
+    if (result.nonfinite > 0) result.first_nonfinite = describe(counts_.first_nonfinite, view_.width);
+    result.interrupted = interrupted;
+    return result;
+  }
+
+  const View& view_;
+  const PathOptions& options_;
+  PassRenderer renderer_;
+  Film film_;
+  PassCounts counts_;
+  Standing now_;
+  double seconds_before_ = 0.0;  // it was resumed
+  Clock::time_point start_ = Clock::now(), last_save_ = start_;
+};
+
 }  // namespace
 
 PathResult path_trace(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options,
                       const Progress& progress) {
   check(options, view);
-  PassRenderer renderer(scene, caster, view, options.max_depth, options.seed, options.extra);
-  Film film(view.width, view.height, options.extra);
-  PathResult result;
-  PassCounts counts;
-  Standing now;
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  const auto seconds = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-
-  while (const int samples = next_samples(options, now, most_samples_of_pass(view))) {
-    const std::optional<PassCounts> pass = renderer.render(
-        {now.passes, samples, now.samples}, progress,
-        [&](double fraction) { progress("path tracing", finished(options, now, fraction * samples, seconds())); });
-    if (!pass) {
-      if (now.passes == 0) throw Interrupted();
-      result.interrupted = true;
-      break;
-    }
-    film.add(renderer.batches(), samples, renderer.extra_batches());
-    counts.add(*pass);
-    now = {film.passes(), film.samples(), seconds(), now.noise};
-    if (options.noise && now.passes >= least_passes) now.noise = film.noise();
-  }
-
-  result.image = film.image();
-  result.mean = film.mean();
-  result.mean_stderr = film.mean_stderr();
-  result.spp = now.samples;
-  result.seconds = now.seconds;
-  result.closest_rays = counts.paths.closest_rays;
-  result.occlusion_rays = counts.paths.occlusion_rays;
-  result.rays = result.closest_rays + result.occlusion_rays;
-  result.nonfinite = counts.paths.nonfinite;
-  if (result.nonfinite > 0) result.first_nonfinite = describe(counts.first_nonfinite, view.width);
-  return result;
+  return Render(scene, caster, view, options).run(progress);
 }
 
 }  // namespace voxref

@@ -5,7 +5,9 @@
 
 #include "image/image.h"
 #include "progress.h"
+#include "reference/checkpoint.h"
 #include "reference/extra_layers.h"
+#include "reference/tiles.h"
 #include "scene/caster.h"
 #include "scene/scene.h"
 
@@ -20,6 +22,8 @@ struct PathOptions {
       max_depth;  ///< 0: emission only, 1: direct, 2: one indirect bounce ...; none: Russian roulette alone
   uint64_t seed = 0;
   ExtraLayers extra;
+  Part part;  ///< with a known number of samples only: parts cannot agree on when to stop. See merge.h
+  CheckpointOptions checkpoint;
 };
 
 struct PathResult {
@@ -35,7 +39,9 @@ struct PathResult {
 };
 
 /// Path traces the view: unidirectional, next-event estimation with multiple importance sampling, Russian roulette. The
-/// result is the same bits whatever the number of threads. @throws Interrupted when stopped before the first samples
+/// result is the same bits whatever the number of threads, and however often the render was killed and resumed (but
+/// with `seconds`, whose number of samples is a matter of luck). Outside the part that was asked for all is zero.
+/// @throws Interrupted when stopped before the first samples
 PathResult path_trace(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options,
                       const Progress& progress = {});
 

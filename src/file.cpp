@@ -2,13 +2,16 @@
 
 #include <fcntl.h>
 #include <openssl/evp.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "error.h"
 
@@ -54,6 +57,22 @@ void write_atomically(const fs::path& file, std::span<const std::byte> content) 
 
 void write_text(const fs::path& file, const std::string& text) {
   write_atomically(file, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void remove_leftovers(const fs::path& file) {
+  const std::string begin = "." + file.stem().string() + ".", end = file.extension().string();
+  std::error_code error;
+  std::vector<fs::path> leftovers;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(file), error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
+    const char* number_end = name.data() + name.size() - end.size();
+    pid_t process = 0;
+    const auto [rest, status] = std::from_chars(name.data() + begin.size(), number_end, process);
+    if (status != std::errc() || rest != number_end || process <= 0) continue;
+    if (::kill(process, 0) != 0 && errno == ESRCH) leftovers.push_back(entry.path());
+  }
+  for (const fs::path& leftover : leftovers) fs::remove(leftover, error);
 }
 
 void require_writable(const fs::path& file) {

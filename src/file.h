@@ -13,6 +13,9 @@ void write_atomically(const std::filesystem::path& file,
 void write_atomically(const std::filesystem::path& file, std::span<const std::byte> content);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
+/// Removes what killed processes of this machine left of their attempts to write `file`.
+void remove_leftovers(const std::filesystem::path& file);
+
 /// Checks, before work begins, that `file` could be written: its folder exists and takes files, and it is no folder
 /// itself. Leaves nothing behind. @throws Error with the path
 void require_writable(const std::filesystem::path& file);

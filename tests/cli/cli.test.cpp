@@ -1,94 +1,8 @@
-// Runs the real program in a folder of its own, as a script would.
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstring>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 
-#include "catch.h"
-#include "file.h"
-#include "image/image_file.h"
-#include "make_scenes/builders.h"
-#include "make_scenes/gltf_writer.h"
-
-namespace fs = std::filesystem;
-using nlohmann::json;
+#include "cli/workplace.h"
 
 namespace {
-
-struct Outcome {
-  int status = -1;
-  std::string out, err;
-};
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-/// A temporary folder in which the program runs; it holds point.glb (Cornell box, point light) and empty.gltf.
-class Workplace {
- public:
-  Workplace() {
-    static int number = 0;
-    folder_ = fs::temp_directory_path() / ("voxref_cli_" + std::to_string(getpid()) + "_" + std::to_string(number++));
-    fs::create_directories(folder_ / "run");
-    voxref::write_glb(path("point.glb"), voxref::cornell_box(voxref::CornellLight::point), "for the tests");
-    voxref::write_text(path("empty.gltf"), R"({"asset": {"version": "2.0"}})");
-  }
-  ~Workplace() { fs::remove_all(folder_); }
-  Workplace(const Workplace&) = delete;
-
-  fs::path path(const std::string& name) const { return folder_ / "run" / name; }
-
-  /// @param before goes in front of the program, for instance "timeout 1"
-  Outcome run(const std::string& arguments, const std::string& before = "") const {
-    const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
-    const std::string line = "cd '" + path("").string() + "' && " + before + " '" VOXREF_PROGRAM "' " + arguments +
-                             " >'" + out + "' 2>'" + err + "'";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, voxref::read_file(out), voxref::read_file(err)};
-  }
-
-  json run_json(const std::string& arguments) const {
-    const Outcome outcome = run(arguments + " --json");
-    INFO(arguments << "\n" << outcome.err);
-    REQUIRE(outcome.status == 0);
-    return json::parse(outcome.out);
-  }
-
-  std::set<std::string> files() const {
-    std::set<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(path(""))) names.insert(entry.path().string());
-    return names;
-  }
-
- private:
-  fs::path folder_;
-};
-
-/// Exit 2, one line that begins with "voxref: " and says `reason`, nothing on stdout, nothing written.
-void check_refused(const Workplace& place, const std::string& arguments, const std::string& reason) {
-  const std::set<std::string> before = place.files();
-  const Outcome outcome = place.run(arguments);
-  INFO(arguments << "\n" << outcome.err);
-  CHECK(outcome.status == 2);
-  CHECK(outcome.out == "");
-  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-  CHECK(outcome.err.substr(0, 8) == "voxref: ");
-  CHECK(contains(outcome.err, reason));
-  CHECK(place.files() == before);
-}
-
-void check_same_bits(const voxref::Image& a, const voxref::Image& b) {
-  REQUIRE(a.channels() == b.channels());
-  for (const std::string& name : a.channels()) {
-    CAPTURE(name);
-    const auto p = a.channel(name), q = b.channel(name);
-    CHECK((p.size() == q.size() && std::memcmp(p.data(), q.data(), p.size_bytes()) == 0));
-  }
-}
 
 bool has_keys(const json& object, const std::vector<std::string>& keys) {
   return std::all_of(keys.begin(), keys.end(), [&](const std::string& key) { return object.contains(key); });
@@ -97,14 +11,13 @@ bool has_keys(const json& object, const std::vector<std::string>& keys) {
 const std::vector<std::string> path_keys = {"mean", "mean_stderr",     "spp",      "seconds",
                                             "rays", "rays_per_second", "nonfinite"};
 const std::vector<std::string> cone_keys = {"mean", "seconds", "bytes", "voxels_occupied", "grid", "nonfinite"};
-const std::string small_view = " --size 12x10 ";
 const std::string small_cone = " --size 12x10 --set grid.resolution=24 --set bounce.count=1 ";
 
 }  // namespace
 
 TEST_CASE("every command has help with an example", "[cli]") {
   const Workplace place;
-  for (const char* command : {"", "info", "path", "cone", "check", "stage", "bench"}) {
+  for (const char* command : {"", "info", "path", "merge", "cone", "check", "stage", "bench"}) {
     const Outcome outcome = place.run(std::string(command) + " --help");
     CAPTURE(command);
     CHECK(outcome.status == 0);

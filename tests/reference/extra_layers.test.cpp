@@ -11,21 +11,6 @@ namespace voxref {
 
 namespace {
 
-/// The inside of a cube of grey walls with a point light, and a glossy block in it.
-Scene lit_room() {
-  Scene scene;
-  add_cube_interior(scene, add_material(scene, lambert({0.7f, 0.6f, 0.5f})));
-  Material glossy;
-  glossy.metallic = 0.5f;
-  glossy.roughness = 0.4f;
-  add_quad(scene, {-0.9f, -0.5f, -0.4f}, {0.0f, 0.0f, 0.8f}, {0.8f, 0.0f, 0.0f}, add_material(scene, glossy));
-  Light light;
-  light.position = {0.5f, 0.2f, 0.3f};
-  light.intensity = glm::vec3(1.0f, 0.5f, 1.0f);
-  scene.lights.push_back(light);
-  return scene;
-}
-
 PathResult render_layers(const Scene& scene, const View& view, int spp, std::optional<int> max_depth,
                          const ExtraLayers& extra) {
   validate(scene);

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -53,13 +52,6 @@ const std::vector<std::string>& light_channels() {
                                                  "direct.G",   "direct.B",   "indirect.R", "indirect.G",
                                                  "indirect.B", "emission.R", "emission.G", "emission.B"};
   return names;
-}
-
-bool same_bits(const Image& a, const Image& b) {
-  if (a.channels() != b.channels()) return false;
-  for (const std::string& name : a.channels())
-    if (std::memcmp(a.channel(name).data(), b.channel(name).data(), a.channel(name).size_bytes()) != 0) return false;
-  return true;
 }
 
 double mean_of(const Image& image, const std::string& channel) {

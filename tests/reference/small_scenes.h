@@ -1,4 +1,5 @@
 #pragma once
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <optional>
 
@@ -53,6 +54,21 @@ inline void add_floor(Scene& scene, float half, uint32_t material) {
   add_quad(scene, {-half, 0.0f, -half}, {0.0f, 0.0f, 2.0f * half}, {2.0f * half, 0.0f, 0.0f}, material);
 }
 
+/// The inside of a cube of grey walls with a point light, and a glossy block in it.
+inline Scene lit_room() {
+  Scene scene;
+  add_cube_interior(scene, add_material(scene, lambert({0.7f, 0.6f, 0.5f})));
+  Material glossy;
+  glossy.metallic = 0.5f;
+  glossy.roughness = 0.4f;
+  add_quad(scene, {-0.9f, -0.5f, -0.4f}, {0.0f, 0.0f, 0.8f}, {0.8f, 0.0f, 0.0f}, add_material(scene, glossy));
+  Light light;
+  light.position = {0.5f, 0.2f, 0.3f};
+  light.intensity = glm::vec3(1.0f, 0.5f, 1.0f);
+  scene.lights.push_back(light);
+  return scene;
+}
+
 inline View view_from(const glm::vec3& eye, const glm::vec3& target, int width, int height, float yfov = 0.8f) {
   const glm::vec3 up =
       eye.x == target.x && eye.z == target.z ? glm::vec3(0.0f, 0.0f, -1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
@@ -61,6 +77,14 @@ inline View view_from(const glm::vec3& eye, const glm::vec3& target, int width, 
   view.width = width;
   view.height = height;
   return view;
+}
+
+/// Whether all channels are the same, bit by bit.
+inline bool same_bits(const Image& a, const Image& b) {
+  if (a.channels() != b.channels()) return false;
+  for (const std::string& name : a.channels())
+    if (std::memcmp(a.channel(name).data(), b.channel(name).data(), a.channel(name).size_bytes()) != 0) return false;
+  return true;
 }
 
 inline PathResult render(const Scene& scene, const View& view, int spp, std::optional<int> max_depth = std::nullopt,

@@ -7,6 +7,7 @@ namespace voxref {
 
 void add_info(CLI::App& program, Run& run);
 void add_path(CLI::App& program, Run& run);
+void add_merge(CLI::App& program, Run& run);
 void add_cone(CLI::App& program, Run& run);
 void add_check(CLI::App& program, Run& run);
 void add_stage(CLI::App& program, Run& run);

@@ -42,6 +42,7 @@ int run(int argc, char* argv[]) {
   Run command;
   add_info(program, command);
   add_path(program, command);
+  add_merge(program, command);
   add_cone(program, command);
   add_check(program, command);
   add_stage(program, command);

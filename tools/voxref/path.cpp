@@ -2,12 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <set>
+
 #include "commands.h"
+#include "error.h"
 #include "file.h"
 #include "image/image_file.h"
 #include "json.h"
 #include "parallel.h"
+#include "parse.h"
 #include "provenance.h"
+#include "reference/identity.h"
+#include "reference/merge.h"
 #include "summary.h"
 
 namespace voxref {
@@ -22,13 +29,37 @@ struct Options {
   std::string output;
 };
 
-int run_path(const Options& options) {
+/// The flags that have no say in the pixels of an image, or of its parts.
+const std::set<std::string> neutral_flags = {"SCENE",  "-o",       "--threads",    "--quiet", "--json",
+                                             "--part", "--resume", "--checkpoint", "--help"};
+
+/// What the pixels depend on: program, scene and flags as they were given. Flags unknown today are in it by themselves.
+nlohmann::json dependencies(const CLI::App& command, const Scene& scene) {
+  nlohmann::json json = {
+      {"version", version()}, {"libraries", program_provenance()["libraries"]}, {"scene_sha256", scene.sha256}};
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && !neutral_flags.contains(option->get_name())) {
+      const std::vector<std::string>& given = option->results();
+      json[option->get_name()] = given.size() == 1 ? nlohmann::json(given[0]) : nlohmann::json(given);
+    }
+  return json;
+}
+
+int run_path(Options& options, const CLI::App& command) {
+  options.path.checkpoint.file = options.output + ".checkpoint";
   require_writable(options.output);
+  remove_leftovers(options.output);
+  remove_leftovers(options.path.checkpoint.file);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
   const View view = make_view(options.view, scene);
   const Caster caster(scene);
+  const bool is_part = command.count("--part") > 0;
+  nlohmann::json depends = dependencies(command, scene);
+  const std::string render = depends.dump();
+  if (is_part) depends["--part"] = fmt::format("{}/{}", options.path.part.index, options.path.part.count);
+  options.path.checkpoint.render = depends.dump();
   PathResult result = path_trace(scene, caster, view, options.path, terminal.progress());
 
   nlohmann::json origin = provenance(scene, view);
@@ -36,14 +67,32 @@ int run_path(const Options& options) {
   origin["spp"] = result.spp;
   if (options.path.max_depth) origin["max_depth"] = *options.path.max_depth;
   attach(result.image, origin);
+  if (is_part) mark_part(result.image, options.path.part, render);
   write_exr(options.output, result.image);
+  if (!result.interrupted) std::filesystem::remove(options.path.checkpoint.file);
 
   say(terminal, result);
   terminal.say("written   " + options.output);
   terminal.result(to_json(result));
   if (!result.interrupted) return exit_done;
-  fmt::print(stderr, "voxref: interrupted: {} holds {} samples per pixel\n", options.output, result.spp);
+  fmt::print(stderr, "voxref: interrupted: {} holds {} samples per pixel; --resume goes on\n", options.output,
+             result.spp);
   return exit_outside_limits;
+}
+
+void add_farm_options(CLI::App& command, PathOptions& options) {
+  command.add_flag("--resume", options.checkpoint.resume,
+                   "goes on from FILE.checkpoint, where an earlier run left one, to the same bits");
+  add_value_option(command, "--checkpoint", "S", "seconds between checkpoints (default: 60)",
+                   [&options](const std::string& text) {
+                     options.checkpoint.interval = parse_number("--checkpoint", text, 0.01, 1e9);
+                   });
+  add_value_option(command, "--part", "I/N", "only the I-th of N parts (I from 1); voxref merge joins them",
+                   [&options](const std::string& text) {
+                     const std::optional<Part> part = parse_part(text);
+                     if (!part) throw Error("--part", "'" + text + "' is not I/N with I from 1 to N");
+                     options.part = *part;
+                   });
 }
 
 }  // namespace
@@ -54,10 +103,18 @@ void add_path(CLI::App& program, Run& run) {
   add_scene_options(*command, options->scene);
   add_output_option(*command, options->output, "FILE", "OpenEXR file to write");
   add_path_options(*command, options->path);
+  add_farm_options(*command, options->path);
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
-  command->footer("Example:\n  voxref path scenes/cornell_box.glb -o cornell.exr --noise 0.01 --size 256x256");
-  on_run(command, run, [options] { return run_path(*options); });
+  command->footer(
+      "Example:\n"
+      "  voxref path scenes/cornell_box.glb -o cornell.exr --noise 0.01 --size 256x256\n"
+      "Killed renders go on, and so do those of a Slurm job array that is requeued (sbatch --array=1-8 --requeue):\n"
+      "  voxref path scene.glb -o part$SLURM_ARRAY_TASK_ID.exr --spp 4096 --part $SLURM_ARRAY_TASK_ID/8 --resume\n"
+      "GNU parallel does the same on the machines it knows; merge joins the parts to the bits of a single render:\n"
+      "  seq 8 | parallel voxref path scene.glb -o part{}.exr --spp 4096 --part {}/8 --resume\n"
+      "  voxref merge part*.exr -o whole.exr");
+  on_run(command, run, [options, command] { return run_path(*options, *command); });
 }
 
 }  // namespace voxref

@@ -44,9 +44,16 @@ void set_command_line(int argc, char* argv[]) {
   for (int i = 1; i < argc; ++i) command_line += " " + quoted(argv[i]);
 }
 
+nlohmann::json program_provenance() {
+  return {{"version", version()}, {"libraries", VOXREF_LIBRARIES}, {"command_line", command_line}};
+}
+
 nlohmann::json provenance(const Scene& scene, const View& view) {
-  return {{"version", version()}, {"libraries", VOXREF_LIBRARIES}, {"command_line", command_line},
-          {"scene", scene.file},  {"scene_sha256", scene.sha256},  {"camera", describe(view)}};
+  nlohmann::json json = program_provenance();
+  json["scene"] = scene.file;
+  json["scene_sha256"] = scene.sha256;
+  json["camera"] = describe(view);
+  return json;
 }
 
 void attach(Image& image, const nlohmann::json& provenance) {

@@ -13,6 +13,9 @@ std::string version();
 /// Remembers how the program was called.
 void set_command_line(int argc, char* argv[]);
 
+/// The part of it that does not depend on a scene: version, libraries, command line.
+nlohmann::json program_provenance();
+
 /// Where a result comes from, one object for image headers and reports: version, libraries, command line, scene and its
 /// SHA-256, size and camera.
 nlohmann::json provenance(const Scene& scene, const View& view);

@@ -1,0 +1,59 @@
+#include "reference/checkpoint.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include "error.h"
+#include "file.h"
+#include "reference/identity.h"
+
+namespace voxref {
+
+namespace {
+// The number counts changes of the format.
+constexpr std::array<char, 20> signature = {"voxref checkpoint 1"};
+constexpr uint64_t most_json = 1 << 20;  // bytes: more is a damaged file
+}  // namespace
+
+void StateReader::bytes(char* to, size_t count) {
+  if (!stream_.read(to, static_cast<std::streamsize>(count)))
+    throw Error(file_.string(), "checkpoint", "is damaged: it ends early; without --resume the render starts anew");
+}
+
+void write_checkpoint(const CheckpointOptions& options, const std::function<void(StateWriter&)>& write) {
+  write_atomically(options.file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    StateWriter writer(stream);
+    writer.value(signature);
+    writer.value(static_cast<uint64_t>(options.render.size()));
+    writer.values(std::span<const char>(options.render));
+    write(writer);
+    stream.close();
+    if (!stream) throw Error(options.file.string(), "cannot be written: " + std::string(std::strerror(errno)));
+  });
+}
+
+bool read_checkpoint(const CheckpointOptions& options, const std::function<void(StateReader&)>& read) {
+  if (!std::filesystem::exists(options.file)) return false;
+  std::ifstream stream(options.file, std::ios::binary);
+  if (!stream) throw Error(options.file.string(), "cannot be read: " + std::string(std::strerror(errno)));
+  StateReader reader(stream, options.file);
+  std::array<char, signature.size()> begin{};
+  reader.value(begin);
+  if (begin != signature) throw Error(options.file.string(), "is no checkpoint of this version of voxref");
+  uint64_t size = 0;
+  reader.value(size);
+  if (size > most_json) throw Error(options.file.string(), "checkpoint", "is damaged");
+  std::string render(size, ' ');
+  reader.values(std::span<char>(render));
+  if (const std::optional<std::string> difference = difference_of(options.render, render))
+    throw Error(options.file.string(), *difference + " here: it is a checkpoint of another render");
+  read(reader);
+  if (stream.peek() != std::ifstream::traits_type::eof())
+    throw Error(options.file.string(), "checkpoint", "is damaged: it does not end where it should");
+  return true;
+}
+
+}  // namespace voxref
