@@ -75,8 +75,6 @@ ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View&
       folder->write_levels(pyramid, true);
     }
   }
-  if (folder) folder->finish();
-
   result.bytes = count_bytes(surfaces, pyramid, bounces ? 2 : 1);
   surfaces = {};  // the image needs none of them
   radiance = {};
@@ -84,6 +82,7 @@ ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View&
     const Medium medium = make_medium(std::move(pyramid));
     return render_cones(scene, caster, medium, view, settings.render, progress);
   });
+  if (folder) folder->finish();  // not before: a run that fails or is stopped leaves no volumes
   result.mean = mean_color(result.image.image);
   seconds.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -83,7 +83,9 @@ Parameter choice(std::string key, std::vector<std::string> names, std::string me
 Parameter bounce_count() {
   const Parameter counted = integer(
       "bounce.count", 0, 1000, "", [](auto& s) -> auto& { return *s.bounce.count; });
-  return {counted.key, "\"auto\", " + counted.range, "bounces at the voxels; auto: until one more adds less than 1 %",
+  return {counted.key, "\"auto\", " + counted.range,
+          "bounces at the voxels; auto: until one adds less than 1 %, which leaves out at most gain / (1 - gain) % of "
+          "the light",
           [](const Settings& s) { return s.bounce.count ? json(*s.bounce.count) : json("auto"); },
           [counted](Settings& s, const json& value) {
             std::optional<int> count;

@@ -21,11 +21,6 @@ using Layer = std::array<std::span<const float>, 3>;
 
 glm::vec3 pixel(const Layer& layer, size_t i) { return {layer[0][i], layer[1][i], layer[2][i]}; }
 
-/// sRGB transfer function, IEC 61966-2-1, of a value in [0,1].
-float encode(float linear) {
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-}
-
 /// What the first three metrics compare: luminance of both sides and of the standard error, per pixel.
 struct Compared {
   std::vector<double> cone, path;
@@ -122,7 +117,7 @@ void measure_pictures(Metrics& metrics, const Image& cone, const Image& path, fl
     for (size_t i = 0; i < count; ++i) {
       const glm::vec3 shown = glm::clamp(pixel(layers[side], i) * scale, 0.0f, 1.0f);
       linear[side][i] = shown;
-      encoded[side][i] = {encode(shown.r), encode(shown.g), encode(shown.b)};
+      encoded[side][i] = {srgb_encode(shown.r), srgb_encode(shown.g), srgb_encode(shown.b)};
       luma[side][i] = luminance(encoded[side][i]);  // BT.709 luma: the same weights on encoded values
     }
   }

@@ -1,8 +1,10 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "compare/metrics.h"
 #include "image/image.h"
@@ -33,8 +35,12 @@ nlohmann::json check_result(const CheckReport& report);
 /// (they are reduced by a whole factor, which the page states, when they have more than 512x512 pixels).
 std::string report_page(const CheckReport& report);
 
-/// Writes cone.exr, path.exr, cone.png, path.png, difference.png, relative_error.png, noise.png, comparison.png (cone,
-/// path and difference side by side), result.json and report.html into the folder, which is made when it is not there.
+/// What write_check writes; comparison.png has cone, path and difference side by side.
+inline constexpr std::array<std::string_view, 10> check_files = {
+    "cone.exr",           "path.exr",  "cone.png",       "path.png",    "difference.png",
+    "relative_error.png", "noise.png", "comparison.png", "result.json", "report.html"};
+
+/// Writes check_files into the folder, which is made when it is not there.
 /// @throws Error with the path of what cannot be written
 void write_check(const std::filesystem::path& folder, const CheckReport& report);
 

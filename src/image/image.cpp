@@ -1,6 +1,7 @@
 #include "image/image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,10 @@ constexpr std::array<std::string_view, 3> rgb_names = {"R", "G", "B"};
 
 std::string channel_name(std::string_view layer, std::string_view channel) {
   return layer.empty() ? std::string(channel) : std::string(layer) + "." + std::string(channel);
+}
+
+float srgb_encode(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
 Image::Image(int width, int height) : width_(width), height_(height) {

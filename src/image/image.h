@@ -50,4 +50,7 @@ std::string channel_name(std::string_view layer, std::string_view channel);
 /// Relative luminance of linear Rec. 709 / sRGB primaries (ITU-R BT.709-6).
 inline float luminance(const glm::vec3& rgb) { return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b; }
 
+/// sRGB transfer function of a linear value in [0,1] (IEC 61966-2-1).
+float srgb_encode(float linear);
+
 }  // namespace voxref

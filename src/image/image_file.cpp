@@ -25,10 +25,6 @@ std::vector<float> interleave(const Image& image) {
   return pixels;
 }
 
-float srgb_encode(float linear) {
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-}
-
 }  // namespace
 
 void write_exr(const std::filesystem::path& file, const Image& image) {

@@ -30,8 +30,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 template <class Visit>
 void for_each_lattice_point(const ClipPolygon& piece, const glm::dvec3& front, double density, Visit&& visit) {
   constexpr double slope = 0.41421356237309503;  // tan(pi / 8): half-way between the axes and the diagonals
-  const glm::dvec3 helper = std::abs(front.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
-  const glm::dvec3 natural = glm::normalize(glm::cross(front, helper));
+  const glm::dvec3 axis = std::abs(front.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const glm::dvec3 natural = glm::normalize(glm::cross(front, axis));
   const glm::dvec3 along = glm::normalize(natural + slope * glm::cross(front, natural));
   const glm::dvec3 across = glm::cross(front, along);
   const double scale = std::sqrt(density);

@@ -24,9 +24,28 @@ void fill_slice(const BrickVolume<Texel>& volume, int z, std::span<float> slice,
 
 VolumeFolderWriter::VolumeFolderWriter(std::filesystem::path folder, const Grid& grid) : folder_(std::move(folder)) {
   std::error_code error;
+  for (std::filesystem::path missing = folder_; !missing.empty() && !std::filesystem::exists(missing, error);
+       missing = missing.parent_path())
+    made_.push_back(missing);
   std::filesystem::create_directories(folder_, error);
-  if (error) throw Error(folder_.string(), "cannot be made: " + error.message());
+  if (error) {
+    remove_made_folders();
+    throw Error(folder_.string(), "cannot be made: " + error.message());
+  }
   index_.grid = grid;
+}
+
+VolumeFolderWriter::~VolumeFolderWriter() {
+  if (finished_) return;
+  std::error_code ignored;  // what cannot be removed stays; there is an error on its way already
+  for (const VolumeEntry& entry : index_.volumes) std::filesystem::remove(file(entry), ignored);
+  remove_made_folders();
+}
+
+/// Only empty folders can be removed: what others put there stays.
+void VolumeFolderWriter::remove_made_folders() const {
+  std::error_code ignored;
+  for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, ignored);
 }
 
 VolumeEntry VolumeFolderWriter::entry(const std::string& name, const glm::ivec3& size, size_t channels,
@@ -46,7 +65,7 @@ void VolumeFolderWriter::write(const VolumeEntry& entry,
     std::filesystem::remove(index_file(folder_), error);
     if (error) throw Error(index_file(folder_).string(), "cannot be replaced: " + error.message());
   }
-  write_npy(folder_ / (entry.name + ".npy"), entry.shape, fill);
+  write_npy(file(entry), entry.shape, fill);
   index_.volumes.push_back(entry);
 }
 
@@ -108,6 +127,9 @@ void VolumeFolderWriter::write_levels(const Pyramid& pyramid, bool bounced) {
     }
 }
 
-void VolumeFolderWriter::finish() { write_volume_index(folder_, index_); }
+void VolumeFolderWriter::finish() {
+  write_volume_index(folder_, index_);
+  finished_ = true;
+}
 
 }  // namespace voxref

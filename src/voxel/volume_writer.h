@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "voxel/mipmap.h"
 #include "voxel/volume_index.h"
@@ -14,12 +15,16 @@ namespace voxref {
 /// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), float32, dense (cli.md,
 /// "Volumes"). The radiometric profile writes albedo (a = opacity), normal, centroid (world), emission where the scene
 /// has it, radiance, radiance_bounce, aniso_<face>_<level>, aniso_bounce_<face>_<level>. Radiance and aniso volumes are
-/// premultiplied. Files appear whole or not at all; volumes.json goes away with the first volume that is written and
-/// comes back last, so that it never describes a mixture. Volumes pass through memory a slice at a time.
+/// premultiplied. Files appear whole or not at all, and all of them or none; volumes.json goes away with the first
+/// volume that is written and comes back last, so that it never describes a mixture. Volumes pass through memory a
+/// slice at a time.
 class VolumeFolderWriter {
  public:
   /// Makes the folder, and those above it, where they are missing. @throws Error with the path
   VolumeFolderWriter(std::filesystem::path folder, const Grid& grid);
+  /// Without finish() removes the volumes that it wrote, and the folders that it made unless others use them.
+  ~VolumeFolderWriter();
+  VolumeFolderWriter(const VolumeFolderWriter&) = delete;
   void write_surfaces(const SurfaceGrid& surfaces);
   /// @param radiance one per voxel of `surfaces`, not premultiplied
   /// @param bounced names it radiance_bounce instead of radiance; so below
@@ -35,10 +40,14 @@ class VolumeFolderWriter {
   /// A volume of one value per voxel of `surfaces` and zero elsewhere. @param put writes voxel i's channels
   void write_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces,
                     const std::function<void(size_t i, float* channels)>& put);
+  void remove_made_folders() const;
+  std::filesystem::path file(const VolumeEntry& entry) const { return folder_ / (entry.name + ".npy"); }
   VolumeEntry entry(const std::string& name, const glm::ivec3& size, size_t channels, const std::string& stage) const;
 
   std::filesystem::path folder_;
+  std::vector<std::filesystem::path> made_;  // folders that were not there, the innermost first
   VolumeIndex index_;
+  bool finished_ = false;
 };
 
 }  // namespace voxref

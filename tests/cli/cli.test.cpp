@@ -25,6 +25,8 @@ TEST_CASE("every command has help with an example", "[cli]") {
     CHECK(contains(outcome.out, "Example"));
     CHECK(contains(outcome.out, std::string("voxref ") + command));
   }
+  for (const std::string command : {"path", "cone", "check"})
+    CHECK(contains(place.run(command + " --help").out, "Ctrl-C"));
   CHECK(place.run("--version").out == "voxref 0.1.0\n");
 }
 
@@ -190,12 +192,26 @@ TEST_CASE("an image's header says where it comes from", "[cli]") {
   };
   CHECK(value("version") == "0.1.0");
   CHECK(value("seed") == "7");
+  CHECK(json::parse(value("path")) == json({{"spp", 2},
+                                            {"noise", nullptr},
+                                            {"time", nullptr},
+                                            {"max_depth", nullptr},
+                                            {"seed", 7},
+                                            {"bounces", 0},
+                                            {"irradiance", false}}));
   CHECK(value("spp") == "2");
   CHECK(contains(value("command_line"), "--seed 7"));
   const std::string bytes = voxref::read_file(place.path("point.glb"));
   CHECK(value("scene_sha256") == voxref::sha256(std::as_bytes(std::span(bytes))));
   CHECK(json::parse(value("camera"))["size"] == json({12, 10}));
   CHECK(contains(value("libraries"), "Embree"));
+
+  REQUIRE(place.run("path point.glb -o open.exr --noise 0.5 --time 100 --max-depth 3" + small_view).status == 0);
+  const json open = json::parse(voxref::read_image(place.path("open.exr")).attributes.at("voxref:path"));
+  CHECK(open["spp"].is_null());
+  CHECK(open["noise"] == 0.5);
+  CHECK(open["time"] == 100.0);
+  CHECK(open["max_depth"] == 3);
 
   REQUIRE(place.run("cone point.glb -o cone.exr" + small_cone).status == 0);
   const auto cone_header = voxref::read_image(place.path("cone.exr")).attributes;
@@ -260,10 +276,12 @@ TEST_CASE("an interrupted path tracer writes the samples it has and ends with 1"
 
 TEST_CASE("an interrupted cone tracer writes nothing and ends with 2", "[cli]") {
   const Workplace place;
-  const Outcome outcome = place.run("cone point.glb -o out.exr --quiet --set bounce.count=1000 --set bounce.cones=64",
-                                    "timeout --preserve-status -s INT 1");
+  const Outcome outcome =
+      place.run("cone point.glb -o out.exr --volumes new/volumes --quiet --set bounce.count=1000 --set bounce.cones=64",
+                "timeout --preserve-status -s INT 2");
   INFO(outcome.err);
   CHECK(outcome.status == 2);
   CHECK(contains(outcome.err, "interrupted"));
   CHECK(!fs::exists(place.path("out.exr")));
+  CHECK(!fs::exists(place.path("new")));
 }

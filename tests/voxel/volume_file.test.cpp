@@ -130,6 +130,29 @@ TEST_CASE("a folder that is being written anew has no volumes.json until it is w
   CHECK_THROWS_AS(VolumeFolder(temporary.path), Error);
 }
 
+TEST_CASE("a folder of volumes that was not finished leaves nothing of its own", "[volume_file]") {
+  const TemporaryFolder temporary;
+  const Example example;
+  const auto start = [&](const std::filesystem::path& folder) {
+    VolumeFolderWriter writer(folder, example.surfaces.grid);
+    writer.write_surfaces(example.surfaces);
+    CHECK(std::filesystem::exists(folder / "albedo.npy"));
+  };
+  for (const std::string name : {"new/folder", "new/folder/"}) {
+    start(temporary.path / name);
+    CHECK(std::filesystem::is_empty(temporary.path));
+  }
+  std::filesystem::create_directories(temporary.path / "other" / "empty");
+  write_text(temporary.path / "other" / "notes.txt", "of somebody else");
+  start(temporary.path / "other");
+  CHECK(read_file(temporary.path / "other" / "notes.txt") == "of somebody else");
+  CHECK(!std::filesystem::exists(temporary.path / "other" / "albedo.npy"));
+  start(temporary.path / "other" / "empty");
+  CHECK(std::filesystem::is_empty(temporary.path / "other" / "empty"));
+  example.write(temporary.path / "other" / "empty");
+  CHECK(VolumeFolder(temporary.path / "other" / "empty").has("albedo"));
+}
+
 TEST_CASE("a folder that cannot be made is refused", "[volume_file]") {
   const TemporaryFolder temporary;
   write_text(temporary.path / "file", "");

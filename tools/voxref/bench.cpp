@@ -93,7 +93,7 @@ void bench_rays(SceneBench& bench, const Scene& scene, const Caster& caster, con
 SceneBench bench_scene(const std::string& file, const Options& options, const Settings& settings, Terminal& terminal) {
   Scene scene = load_scene({file, {}, {}}, terminal);
   ensure_light(scene);
-  const View view = make_view(options.view, scene);
+  const View view = make_view(options.view, scene, std::max(path_bytes_per_pixel({}), cone_bytes_per_pixel));
   const Caster caster(scene);
   // The progress is for Ctrl-C alone: drawing it would be measured too.
   Progress silent = terminal.progress();

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "compare/report.h"
 #include "json.h"
+#include "outputs.h"
 #include "parallel.h"
 #include "parse.h"
 #include "pipeline.h"
@@ -26,6 +27,12 @@ struct Options {
   ConeTraceOutputs outputs;
 };
 
+std::vector<std::filesystem::path> written_files(const Options& options) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string_view name : check_files) files.push_back(std::filesystem::path(options.output) / name);
+  return files;
+}
+
 void say_verdict(Terminal& terminal, const CheckReport& report) {
   const Metrics& m = report.metrics;
   terminal.say(fmt::format("{:<9} cone / path = {:.4f}, relative error {:.2f} %, noise share {:.2f} %  ({})", "verdict",
@@ -37,13 +44,39 @@ void say_verdict(Terminal& terminal, const CheckReport& report) {
     terminal.say(fmt::format("{:<9} {} {:.2f} %", "budget", *within ? "within" : "EXCEEDS", 100 * *report.budget));
 }
 
+/// Gives the cone tracer the bounces of paths that end at `max_depth`, unless their number was asked for. What its
+/// image gathers has been scattered once at the voxels where it comes from punctual lights; where surfaces or the
+/// background glow it comes from there straight. Each bounce adds one scattering to either.
+/// @param lights whether there are punctual ones @param glow whether there is light of surfaces or the background
+void match_depth(Settings& settings, int max_depth, bool lights, bool glow, Terminal& terminal) {
+  if (settings.bounce.count) return;
+  if (lights && glow) {
+    terminal.warn(
+        "voxref: warning: --max-depth: no bounce.count lets the cone tracer stop there too where punctual lights and "
+        "glowing surfaces or a background both light the scene; it stays auto");
+    return;
+  }
+  constexpr int most_bounces = 1000;  // of bounce.count
+  const int least = glow ? 1 : 2;
+  if (max_depth < least)
+    throw Error("--max-depth",
+                fmt::format("{} is below {}: cones gather light that {}, and nothing before that", max_depth, least,
+                            glow ? "comes from another surface" : "a surface has scattered already"));
+  // Longer paths than the most bounces differ from endless ones by nothing, and so auto serves them.
+  if (max_depth - least <= most_bounces) settings.bounce.count = max_depth - least;
+}
+
 int run_check(const Options& options) {
-  const Settings settings = make_settings(options.settings);
+  Settings settings = make_settings(options.settings);
+  require_no_clash({options.scene.file, options.settings.config, written_files(options), options.outputs.volumes});
   require_folder(options.output);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
-  const View view = make_view(options.view, scene);
+  // The cone tracer's image is there while the path tracer works; comparing the two needs less than that.
+  const View view = make_view(options.view, scene, cone_image_bytes_per_pixel + path_bytes_per_pixel(options.path));
+  const bool glow = scene.has_emission() || view.background != glm::vec3(0.0f);
+  if (options.path.max_depth) match_depth(settings, *options.path.max_depth, !scene.lights.empty(), glow, terminal);
   const Caster caster(scene);
   // The cone tracer first: it is quick, and refuses what it cannot do before the path tracer has worked for minutes.
   ConeTraceResult cone = cone_trace(scene, caster, view, settings, options.outputs, terminal.progress());
@@ -51,18 +84,16 @@ int run_check(const Options& options) {
   if (path.interrupted) throw Interrupted();  // a comparison with fewer samples than asked for is not the one asked for
 
   nlohmann::json origin = provenance(scene, view);
-  origin["seed"] = options.path.seed;
-  origin["spp"] = path.spp;
+  add_path_provenance(origin, options.path, path.spp);
   origin["settings"] = to_json(settings);
   attach(path.image, origin);
   attach(cone.image.image, origin);
 
-  const bool punctual = !scene.has_emission() && view.background == glm::vec3(0.0f);
   const float exposure = auto_exposure(path.image);
   const CheckReport report = {.title = std::filesystem::path(scene.file).filename().string(),
                               .cone = cone.image.image,
                               .path = path.image,
-                              .metrics = compare(cone.image.image, path.image, punctual, exposure),
+                              .metrics = compare(cone.image.image, path.image, !glow, exposure),
                               .exposure = exposure,
                               .budget = options.budget,
                               .cone_result = to_json(cone),
@@ -92,7 +123,9 @@ void add_check(CLI::App& program, Run& run) {
   add_path_options(*command, options->path);
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
-  command->footer("Example:\n  voxref check scenes/cornell_box_point.glb -o out/cornell --spp 256 --budget 0.2");
+  command->footer(
+      "Ctrl-C writes neither images nor report, and exits with 2; volumes that are finished stay.\n\n"
+      "Example:\n  voxref check scenes/cornell_box_point.glb -o out/cornell --spp 256 --budget 0.2");
   on_run(command, run, [options] { return run_check(*options); });
 }
 

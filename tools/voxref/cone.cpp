@@ -4,6 +4,7 @@
 #include "file.h"
 #include "image/image_file.h"
 #include "json.h"
+#include "outputs.h"
 #include "parallel.h"
 #include "pipeline.h"
 #include "provenance.h"
@@ -24,11 +25,12 @@ struct Options {
 
 int run_cone(const Options& options) {
   const Settings settings = make_settings(options.settings);
+  require_no_clash({options.scene.file, options.settings.config, {options.output}, options.outputs.volumes});
   require_writable(options.output);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
-  const View view = make_view(options.view, scene);
+  const View view = make_view(options.view, scene, cone_bytes_per_pixel);
   const Caster caster(scene);
   ConeTraceResult result = cone_trace(scene, caster, view, settings, options.outputs, terminal.progress());
 
@@ -63,7 +65,8 @@ void add_cone(CLI::App& program, Run& run) {
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
   command->footer(parameter_table() +
-                  "\nExample:\n  voxref cone scenes/cornell_box_point.glb -o cone.exr --set grid.resolution=128");
+                  "\nCtrl-C writes nothing, no volumes either, and exits with 2.\n\nExample:\n  voxref cone "
+                  "scenes/cornell_box_point.glb -o cone.exr --set grid.resolution=128");
   on_run(command, run, [options] { return run_cone(*options); });
 }
 

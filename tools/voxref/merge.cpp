@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "commands.h"
+#include "error.h"
 #include "file.h"
 #include "image/image_file.h"
 #include "json.h"
+#include "outputs.h"
 #include "provenance.h"
 #include "terminal.h"
 
@@ -41,6 +43,8 @@ nlohmann::json result_of(const Image& image, size_t parts) {
 }
 
 int run_merge(const Options& options) {
+  for (const std::string& part : options.parts)
+    if (same_place(part, options.output)) throw Error("-o", "'" + options.output + "' is one of the parts");
   require_writable(options.output);
   Terminal terminal(options.common);
   const Progress progress = terminal.progress();

@@ -85,9 +85,8 @@ Camera choose_camera(const ViewOptions& options, const Scene& scene) {
 }
 
 /// An image that cannot fit into the machine's memory is refused before the system ends the program for it.
-void require_memory(const View& view) {
-  constexpr double bytes_per_pixel = 4.0 * 24;  // a renderer's image holds about 24 channels of 4 bytes
-  const double needed = bytes_per_pixel * view.width * view.height;
+void require_memory(const View& view, size_t bytes_per_pixel) {
+  const double needed = static_cast<double>(bytes_per_pixel) * view.width * view.height;
   const double installed = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed > installed)
     throw Error("--size", fmt::format("{}x{} needs {:.0f} GiB of memory, the machine has {:.0f}", view.width,
@@ -95,6 +94,14 @@ void require_memory(const View& view) {
 }
 
 }  // namespace
+
+size_t path_bytes_per_pixel(const PathOptions& options) {
+  // While it renders: sums in float64 (Film::Pixel, 256 bytes), the running pass (PixelBatch, 68), and at the end the
+  // image of 25 float32 channels. Writing the file needs less: sums and pass are gone, a second image is there.
+  constexpr size_t film = 256, pass = 68, image = 4 * 25;
+  constexpr size_t extra_layer = 3 * (8 + 4 + 4);  // the same three, of one colour
+  return film + pass + image + extra_layer * options.extra.count();
+}
 
 void add_value_option(CLI::App& command, const std::string& flag, const std::string& value, const std::string& help,
                       const std::function<void(const std::string& text)>& take) {
@@ -228,7 +235,7 @@ void refuse_leftovers(const CLI::App& command) {
   throw Error("'" + first + "'", (command.get_parent() ? "unexpected argument; see " : "unknown command; see ") + help);
 }
 
-View make_view(const ViewOptions& options, const Scene& scene) {
+View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_pixel) {
   View view;
   view.camera = choose_camera(options, scene);
   view.pixel = options.pixel;
@@ -242,7 +249,7 @@ View make_view(const ViewOptions& options, const Scene& scene) {
     view.width = static_cast<int>(usual_width);
     view.height = static_cast<int>(height);
   }
-  require_memory(view);
+  require_memory(view, bytes_per_pixel);
   return view;
 }
 

@@ -66,8 +66,14 @@ void on_run(CLI::App* command, Run& run, const std::function<int()>& work);
 /// @throws Error naming the first argument that nobody took, and the nearest flag
 void refuse_leftovers(const CLI::App& command);
 
-/// The camera that was asked for, else the scene's first, else one that frames the scene. @throws Error
-View make_view(const ViewOptions& options, const Scene& scene);
+/// The camera that was asked for, else the scene's first, else one that frames the scene. @throws Error, also when the
+/// machine has less memory than an image of `bytes_per_pixel` needs
+View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_pixel);
+/// The most memory that a renderer holds at once, from its image's first pixel to the written file.
+size_t path_bytes_per_pixel(const PathOptions& options);
+/// The cone tracer's image of 23 float32 channels, and its copy in the order of the file.
+constexpr size_t cone_image_bytes_per_pixel = 4 * 23;
+constexpr size_t cone_bytes_per_pixel = 2 * cone_image_bytes_per_pixel;
 /// The profile, then the file, then the assignments. @throws Error with the file or flag, and the parameter
 Settings make_settings(const SettingsOptions& options);
 /// Checks before work begins that `folder` exists or could be made, and takes files. @throws Error with the path

@@ -10,6 +10,7 @@
 #include "file.h"
 #include "image/image_file.h"
 #include "json.h"
+#include "outputs.h"
 #include "parallel.h"
 #include "parse.h"
 #include "provenance.h"
@@ -47,13 +48,14 @@ nlohmann::json dependencies(const CLI::App& command, const Scene& scene) {
 
 int run_path(Options& options, const CLI::App& command) {
   options.path.checkpoint.file = options.output + ".checkpoint";
+  require_no_clash({options.scene.file, {}, {options.output, options.path.checkpoint.file}, {}});
   require_writable(options.output);
   remove_leftovers(options.output);
   remove_leftovers(options.path.checkpoint.file);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
-  const View view = make_view(options.view, scene);
+  const View view = make_view(options.view, scene, path_bytes_per_pixel(options.path));
   const Caster caster(scene);
   const bool is_part = command.count("--part") > 0;
   nlohmann::json depends = dependencies(command, scene);
@@ -63,9 +65,7 @@ int run_path(Options& options, const CLI::App& command) {
   PathResult result = path_trace(scene, caster, view, options.path, terminal.progress());
 
   nlohmann::json origin = provenance(scene, view);
-  origin["seed"] = options.path.seed;
-  origin["spp"] = result.spp;
-  if (options.path.max_depth) origin["max_depth"] = *options.path.max_depth;
+  add_path_provenance(origin, options.path, result.spp);
   attach(result.image, origin);
   if (is_part) mark_part(result.image, options.path.part, render);
   write_exr(options.output, result.image);
@@ -107,6 +107,7 @@ void add_path(CLI::App& program, Run& run) {
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
   command->footer(
+      "Ctrl-C writes the samples that there are, and exits with 1.\n\n"
       "Example:\n"
       "  voxref path scenes/cornell_box.glb -o cornell.exr --noise 0.01 --size 256x256\n"
       "Killed renders go on, and so do those of a Slurm job array that is requeued (sbatch --array=1-8 --requeue):\n"

@@ -56,6 +56,19 @@ nlohmann::json provenance(const Scene& scene, const View& view) {
   return json;
 }
 
+void add_path_provenance(nlohmann::json& provenance, const PathOptions& options, int spp) {
+  const auto given = [](const auto& value) { return value ? nlohmann::json(*value) : nlohmann::json(); };
+  provenance["seed"] = options.seed;
+  provenance["spp"] = spp;
+  provenance["path"] = {{"spp", options.spp > 0 ? nlohmann::json(options.spp) : nlohmann::json()},
+                        {"noise", given(options.noise)},
+                        {"time", given(options.seconds)},
+                        {"max_depth", given(options.max_depth)},
+                        {"seed", options.seed},
+                        {"bounces", options.extra.bounces},
+                        {"irradiance", options.extra.irradiance}};
+}
+
 void attach(Image& image, const nlohmann::json& provenance) {
   for (const auto& [key, value] : provenance.items())
     image.attributes["voxref:" + key] = value.is_string()

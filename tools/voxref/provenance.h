@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "reference/path.h"
 #include "scene/scene.h"
 #include "settings.h"
 
@@ -19,6 +20,9 @@ nlohmann::json program_provenance();
 /// Where a result comes from, one object for image headers and reports: version, libraries, command line, scene and its
 /// SHA-256, size and camera.
 nlohmann::json provenance(const Scene& scene, const View& view);
+
+/// Adds `seed`, `spp`, the samples that were taken, and `path`: all options of the path tracer, null where not given.
+void add_path_provenance(nlohmann::json& provenance, const PathOptions& options, int spp);
 
 /// Puts every key into the header as the string attribute `voxref:KEY`.
 void attach(Image& image, const nlohmann::json& provenance);

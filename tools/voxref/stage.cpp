@@ -4,6 +4,7 @@
 #include "cone/medium.h"
 #include "image/image_file.h"
 #include "json.h"
+#include "outputs.h"
 #include "parallel.h"
 #include "provenance.h"
 #include "summary.h"
@@ -21,6 +22,11 @@ struct Options {
   SettingsOptions settings;
   std::string stage, from, output;
 };
+
+/// What gather writes.
+std::filesystem::path image_file(const Options& options) {
+  return std::filesystem::path(options.output) / "gather.exr";
+}
 
 /// What every stage starts from.
 struct Input {
@@ -74,7 +80,7 @@ void run_bounce(const Input& input) {
 
 void run_gather(const Input& input) {
   const Scene scene = stage_scene(input);
-  const View view = make_view(input.options.view, scene);
+  const View view = make_view(input.options.view, scene, cone_bytes_per_pixel);
   const Caster caster(scene);
   const bool bounced = input.volumes.has("radiance_bounce");
   const Medium medium = make_medium(input.volumes.pyramid(bounced));
@@ -84,10 +90,13 @@ void run_gather(const Input& input) {
   origin["volumes"] = input.options.from;
   attach(result.image, origin);
   std::filesystem::create_directories(input.output);
-  write_exr(input.output / "gather.exr", result.image);
+  write_exr(image_file(input.options), result.image);
 }
 
 int run_stage(const Options& options) {
+  // One stage's volumes.json would replace that of all the others.
+  if (same_place(options.from, options.output)) throw Error("-o", "'" + options.output + "' is the folder of --from");
+  require_no_clash({options.scene.file, options.settings.config, {image_file(options)}, std::nullopt});
   require_folder(options.output);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
