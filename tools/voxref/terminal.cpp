@@ -8,7 +8,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +19,24 @@ namespace voxref {
 namespace {
 
 std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free);  // else a signal handler must not touch it
+std::atomic<int64_t> interrupted_at = 0;  // nanoseconds of the monotonic clock
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free,
+              "else a signal handler must not touch them");
+
+/// The first signal asks the work to stop, a second one ends the program. `timeout -s INT` sends one to the process and
+/// to its group at once, so what follows within a second is still the first.
+void interrupt(int signal) {
+  constexpr int64_t second = 1'000'000'000;
+  timespec clock = {};
+  clock_gettime(CLOCK_MONOTONIC, &clock);
+  const int64_t now = clock.tv_sec * second + clock.tv_nsec;
+  if (!interrupted.exchange(true)) {
+    interrupted_at = now;
+  } else if (now - interrupted_at > second) {
+    ::signal(signal, SIG_DFL);
+    raise(signal);
+  }
+}
 
 std::string duration(double seconds) {
   const long long total = std::llround(seconds);
@@ -30,9 +49,10 @@ std::string duration(double seconds) {
 
 void catch_interrupt() {
   struct sigaction action = {};
-  action.sa_handler = [](int) { interrupted.store(true, std::memory_order_relaxed); };
-  action.sa_flags = SA_RESETHAND | SA_RESTART;  // the second one finds the default action, which ends the program
+  action.sa_handler = interrupt;
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);  // how schedulers ask a job to end
 }
 
 /// The line that tells how far the work is.
