@@ -1,6 +1,5 @@
 #pragma once
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include "image/image_file.h"
 #include "make_scenes/builders.h"
 #include "make_scenes/gltf_writer.h"
+#include "temporary_folder.h"
 
 // The real program in a folder of its own, as a script would run it.
 
@@ -29,20 +29,15 @@ inline bool contains(const std::string& text, const std::string& part) { return 
 class Workplace {
  public:
   Workplace() {
-    static int number = 0;
-    folder_ = fs::temp_directory_path() / ("voxref_cli_" + std::to_string(getpid()) + "_" + std::to_string(number++));
-    fs::create_directories(folder_ / "run");
+    fs::create_directories(folder_.path / "run");
     voxref::write_glb(path("point.glb"), voxref::cornell_box(voxref::CornellLight::point), "for the tests");
     voxref::write_text(path("empty.gltf"), R"({"asset": {"version": "2.0"}})");
   }
-  ~Workplace() { fs::remove_all(folder_); }
-  Workplace(const Workplace&) = delete;
-
-  fs::path path(const std::string& name) const { return folder_ / "run" / name; }
+  fs::path path(const std::string& name) const { return folder_.path / "run" / name; }
 
   /// @param before goes in front of the program, for instance "timeout 1"
   Outcome run(const std::string& arguments, const std::string& before = "") const {
-    const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
+    const std::string out = (folder_.path / "out").string(), err = (folder_.path / "err").string();
     const std::string line = "cd '" + path("").string() + "' && " + before + " '" VOXREF_PROGRAM "' " + arguments +
                              " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(line.c_str());
@@ -63,7 +58,7 @@ class Workplace {
   }
 
  private:
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// Exit 2, one line that begins with "voxref: " and says `reason`, nothing on stdout, nothing written.

@@ -9,6 +9,7 @@
 #include "catch.h"
 #include "compare/synthetic.h"
 #include "image/image_file.h"
+#include "temporary_folder.h"
 
 using voxref::Color;
 using voxref::Image;
@@ -118,10 +119,10 @@ TEST_CASE("Pictures stand side by side with a white gap and survive the file", "
   CHECK(pixel_of(strip, 5, 3) == Color{255, 255, 255});
   CHECK(pixel_of(strip, 13, 0) == Color{0, 0, 0});
 
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "voxref_strip.png";
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path / "strip.png";
   write_png(file, strip);
   const Image read = voxref::read_image(file);
-  std::filesystem::remove(file);
   REQUIRE(read.width() == strip.width);
   CHECK(read.channel("R")[4] == 0.0f);
   CHECK(read.channel("R")[5] == 1.0f);

@@ -12,6 +12,7 @@
 #include "compare/synthetic.h"
 #include "file.h"
 #include "image/image_file.h"
+#include "temporary_folder.h"
 
 using voxref::CheckReport;
 using voxref::Image;
@@ -43,13 +44,6 @@ CheckReport report_of(const Image& cone, const Image& path) {
        {"settings", {{"grid", {{"resolution", 128}}}, {"cone", {{"step", 0.5}}}}},
        {"seed", 0}}};
 }
-
-/// A folder that is gone when the test is.
-struct TemporaryFolder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / "voxref_report_test";
-  TemporaryFolder() { std::filesystem::remove_all(path); }
-  ~TemporaryFolder() { std::filesystem::remove_all(path); }
-};
 
 /// The start tags that nothing closes, and the end tags that nothing opened, of a page without optional ones.
 std::vector<std::string> unbalanced(const std::string& html) {
@@ -144,7 +138,6 @@ std::optional<std::string> run_in_browser(const CheckReport& report, const std::
                                           const std::string& fragment) {
   if (std::system("chromium --version >/dev/null 2>&1") != 0) return std::nullopt;
   const TemporaryFolder folder;
-  std::filesystem::create_directories(folder.path);
   const std::filesystem::path page = folder.path / "report.html", dump = folder.path / "dom.html";
   voxref::write_text(page, report_page(report) + "<script>" + script + "</script>");
   const std::string command =

@@ -252,8 +252,8 @@ TEST_CASE("An accessor without bytes cannot ask for gigabytes", "[gltf]") {
 
 TEST_CASE("Files that are no glTF files are refused", "[gltf]") {
   const TemporaryFolder folder;
-  CHECK_THROWS_AS(voxref::load_gltf(folder.path() / "absent.glb"), voxref::Error);
-  CHECK(refusal(folder.path()).starts_with("file: "));
+  CHECK_THROWS_AS(voxref::load_gltf(folder.path / "absent.glb"), voxref::Error);
+  CHECK(refusal(folder.path).starts_with("file: "));
   CHECK(refusal("", "scene.gltf").starts_with("JSON: "));
   CHECK(refusal("hello", "scene.gltf").starts_with("JSON: "));
   CHECK(refusal("[1, 2]", "scene.gltf").starts_with("document: "));
