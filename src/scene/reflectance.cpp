@@ -31,7 +31,7 @@ struct AlbedoEntry {
 };
 constexpr int table_cosines = 32;      // entry i: n.v = i / 31
 constexpr int table_roughnesses = 32;  // entry j: perceptual roughness sqrt(alpha) = j / 31
-constexpr int normals_per_side = 48;    // microfacet normals per entry: 48 x 48
+constexpr int normals_per_side = 48;   // microfacet normals per entry: 48 x 48
 
 /// Smith's G1 of GGX, Walter et al. 2007 eq. 34, for a cosine c > 0.
 float smith_masking(float c, float alpha) {
