@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -22,19 +21,6 @@ Scene floor_scene() {
 
 /// From above, so that all pixels see the floor.
 View floor_view() { return view_from({0.3f, 2.0f, 0.2f}, {0.0f, 0.0f, 0.0f}, 16, 16, 0.7f); }
-
-/// Irradiance of a polygon of radiance 1 on a plane of the given normal, counter-clockwise seen from the receiver;
-/// Lambert 1760, E = 1/2 sum over edges of the angle that the edge subtends times the normal of its plane.
-template <size_t Count>
-double polygon_irradiance(const std::array<glm::dvec3, Count>& corners, const glm::dvec3& point,
-                          const glm::dvec3& normal) {
-  double sum = 0.0;
-  for (size_t i = 0; i < Count; ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - point), b = glm::normalize(corners[(i + 1) % Count] - point);
-    sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), normal);
-  }
-  return 0.5 * std::abs(sum);
-}
 
 }  // namespace
 
@@ -63,7 +49,7 @@ TEST_CASE("Each of many point lights gives its share", "[closed_form]") {
     scene.lights.push_back(light);
   }
   const View view = floor_view();
-  expect_radiance(render(scene, view, 256), [&](int x, int y) {
+  expect_radiance(render(scene, view, 1024), [&](int x, int y) {
     double sum = 0.0;
     for (const Light& light : scene.lights) {
       const glm::dvec3 d = glm::dvec3(light.position) - floor_point(view, x, y);
@@ -74,41 +60,18 @@ TEST_CASE("Each of many point lights gives its share", "[closed_form]") {
 }
 
 TEST_CASE("A directional light on a tilted plane gives E cos", "[closed_form]") {
-  for (const double tilt : {0.0, 0.6, 1.2}) {
-    Scene scene = floor_scene();
+  for (const double tilt : {0.0, 0.4, 0.8}) {
+    Scene scene;
+    const glm::vec3 across(std::cos(tilt), std::sin(tilt), 0.0), along(0.0f, 0.0f, -1.0f);
+    add_quad(scene, -5.0f * (across + along), 10.0f * across, 10.0f * along,
+             add_material(scene, lambert(glm::vec3(albedo))));
     Light light;
     light.type = LightType::directional;
-    light.direction = glm::vec3(std::sin(tilt), -std::cos(tilt), 0.0);
+    light.direction = {0.0f, -1.0f, 0.0f};
     light.intensity = glm::vec3(2.0f);
     scene.lights.push_back(light);
     expect_radiance(render(scene, floor_view(), 2), [&](int, int) { return albedo / pi * 2.0 * std::cos(tilt); });
   }
-}
-
-TEST_CASE("A rectangle luminaire over a plane gives Lambert's polygon formula", "[closed_form]") {
-  Scene scene = floor_scene();
-  add_quad(scene, {-0.7f, 0.9f, -0.4f}, {1.2f, 0.2f, 0.0f}, {0.0f, 0.0f, 0.8f},  // faces down, tilted
-           add_material(scene, lambert(glm::vec3(0.0f), glm::vec3(3.0f))));
-  const View view = view_from({0.9f, 0.6f, 1.2f}, {0.0f, 0.0f, 0.0f}, 16, 16, 0.7f);
-  const std::array<glm::dvec3, 4> corners = {
-      glm::dvec3(-0.7, 0.9, -0.4), {0.5, 1.1, -0.4}, {0.5, 1.1, 0.4}, {-0.7, 0.9, 0.4}};
-  expect_radiance(render(scene, view, 1024), [&](int x, int y) {
-    const glm::dvec3 point = floor_point(view, x, y);
-    if (std::max(std::abs(point.x), std::abs(point.z)) > 2.9) return 0.0;
-    return albedo / pi * 3.0 * polygon_irradiance(corners, point, {0.0, 1.0, 0.0});
-  });
-}
-
-TEST_CASE("A rectangle that nearly touches the plane is right, where the BSDF's rays carry the load", "[closed_form]") {
-  Scene scene = floor_scene();
-  add_quad(scene, {-0.5f, 0.02f, -0.5f}, {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f},
-           add_material(scene, lambert(glm::vec3(0.0f), glm::vec3(1.0f))));
-  const View view = view_from({0.0f, 0.01f, 0.0f}, {0.0f, 0.0f, 0.0f}, 8, 8, 1.0f);  // from between the two
-  const std::array<glm::dvec3, 4> corners = {
-      glm::dvec3(-0.5, 0.02, -0.5), {0.5, 0.02, -0.5}, {0.5, 0.02, 0.5}, {-0.5, 0.02, 0.5}};
-  expect_radiance(render(scene, view, 256), [&](int x, int y) {
-    return albedo / pi * polygon_irradiance(corners, floor_point(view, x, y), {0.0, 1.0, 0.0});
-  });
 }
 
 TEST_CASE("A constant background over an unoccluded plane gives albedo times its radiance", "[closed_form]") {

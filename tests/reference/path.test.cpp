@@ -3,14 +3,11 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <numbers>
-#include <random>
 #include <vector>
 
 #include "catch.h"
 #include "parallel.h"
 #include "reference/small_scenes.h"
-#include "scene/surface.h"
 
 namespace voxref {
 
@@ -59,36 +56,6 @@ double mean_of(const Image& image, const std::string& channel) {
   for (const float value : image.channel(channel)) sum += value;
   return sum / static_cast<double>(image.pixel_count());
 }
-
-/// A second estimator that shares nothing with the first but scene, caster and BSDF values: directions uniform over the
-/// hemisphere, no light sampling, independent random numbers, a fixed number of bounces.
-struct BruteForce {
-  const Scene& scene;
-  const Caster& caster;
-  Surfaces surfaces{scene};
-  std::mt19937_64 random{42};
-
-  glm::vec3 uniform_direction(const glm::vec3& normal) {
-    std::normal_distribution<float> normal_number;
-    glm::vec3 v(normal_number(random), normal_number(random), normal_number(random));
-    v = glm::normalize(v);
-    return glm::dot(v, normal) < 0.0f ? -v : v;
-  }
-  /// Green radiance of 0 ... `depth` scatterings along a ray.
-  double radiance(const Ray& ray, int depth) {
-    const Hit hit = caster.closest(ray);
-    if (!hit) return 0.0;
-    const glm::vec3 out = -glm::normalize(ray.direction);
-    const SurfacePoint point = surfaces.point(hit, out);
-    if (depth == 0) return point.emission.g;
-    const glm::vec3 in = uniform_direction(point.geometric_normal);
-    const float cosine = glm::dot(point.shading_normal, in);
-    const double value = evaluate(point.reflectance, point.shading_normal, out, in).g * std::max(cosine, 0.0f);
-    if (value == 0.0) return point.emission.g;
-    const Ray next = caster.leave(point.position, point.geometric_normal, in);
-    return point.emission.g + 2.0 * std::numbers::pi * value * radiance(next, depth - 1);
-  }
-};
 
 }  // namespace
 
@@ -155,81 +122,6 @@ TEST_CASE("The layers sum to the image and max_depth cuts them", "[path]") {
   // The same random numbers at the same vertices: what is not cut does not change.
   CHECK(mean_of(all.image, "direct.G") == mean_of(one_bounce.image, "direct.G"));
   CHECK(mean_of(all.image, "emission.G") == mean_of(emission.image, "emission.G"));
-}
-
-TEST_CASE("The mean agrees with brute force without light sampling", "[path]") {
-  // Three scatterings, so that the recursion ends: Lambert walls, a glossy shelf and a large lamp, reached only by
-  // chance. A bias of 2 % would be seen: the standard error is about 0.4 %.
-  const Scene scene = room(5.0f, 0.0f, 0.7f);
-  const int side = 24;
-  const View view = room_view(side);
-  const PathResult traced = render(scene, view, 64, 3);
-  const Caster caster(scene);
-  BruteForce brute{scene, caster};
-  const RayGenerator rays(view);
-  const int samples = 600;
-  double sum = 0.0, squares = 0.0;
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) {
-      double pixel = 0.0;
-      for (int i = 0; i < samples; ++i) {
-        const double value = brute.radiance(rays({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}), 3);
-        pixel += value;
-        squares += value * value;
-      }
-      sum += pixel;
-    }
-  const double count = static_cast<double>(samples) * side * side;
-  const double mean = sum / count, error = std::sqrt((squares / count - mean * mean) / count);
-  CAPTURE(mean, error, traced.mean.g, traced.mean_stderr.g);
-  CHECK(std::abs(traced.mean.g - mean) < 4.0 * std::hypot(error, traced.mean_stderr.g));
-  CHECK(std::hypot(error, traced.mean_stderr.g) < 0.005 * mean);
-}
-
-TEST_CASE("Errors divided by their standard errors have the variance of Student's distribution", "[path]") {
-  // Over seeds, against the mean of all seeds. With R equal passes the quotient has variance (R-1)/(R-3); the mean of S
-  // seeds takes (S-1)/S of it. 248 samples: 31 passes of 8. The limits are four standard errors of the sample variance,
-  // from the fourth moment, and 5 % for pass means that are not quite normal.
-  const Scene scene = room();
-  const View view = room_view(12);
-  constexpr int seeds = 24, spp = 248, passes = 31;
-  std::vector<PathResult> results;
-  for (uint64_t seed = 0; seed < seeds; ++seed) results.push_back(render(scene, view, spp, 2, seed));
-  for (const auto& [value, error] : {std::pair("G", "stderr.G"), std::pair("indirect.G", "stderr.indirect.Y")}) {
-    const bool total = std::string(value) == "G";
-    double m2 = 0.0, m4 = 0.0;
-    int count = 0;
-    for (size_t i = 0; i < results[0].image.pixel_count(); ++i) {
-      const auto sample = [&](const Image& image) {
-        if (total) return image.channel("G")[i];
-        const auto layer = image.layer("indirect");
-        return luminance({layer[0][i], layer[1][i], layer[2][i]});
-      };
-      double mean = 0.0;
-      for (const PathResult& result : results) mean += sample(result.image) / static_cast<double>(seeds);
-      for (const PathResult& result : results) {
-        const double z = (sample(result.image) - mean) / result.image.channel(error)[i];
-        m2 += z * z;
-        m4 += z * z * z * z;
-        ++count;
-      }
-    }
-    m2 /= count;
-    m4 /= count;
-    const double expected = (passes - 1.0) / (passes - 3.0) * (seeds - 1.0) / seeds;
-    CAPTURE(value, m2, expected);
-    CHECK(std::abs(m2 - expected) < 4.0 * std::sqrt((m4 - m2 * m2) / count) + 0.05 * expected);
-  }
-}
-
-TEST_CASE("The error falls at least with the square root of the samples", "[path]") {
-  const auto noise = [](int spp) {
-    const PathResult result = render(room(), room_view(24), spp);
-    return mean_of(result.image, "stderr.Y");
-  };
-  // 16 times the samples: 4 for independent ones, more for stratified ones. 10 % for the noise of the noise: 576
-  // pixels, each known to 18 %, with light tails to spare.
-  CHECK(noise(16) / noise(256) > 4.0 * 0.9);
 }
 
 TEST_CASE("A noise or a time to reach ends the render", "[path]") {
