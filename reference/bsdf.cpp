@@ -34,9 +34,8 @@ float Bsdf::specular_pdf(const glm::vec3& in) const {
   const glm::vec3& normal = point_.shading_normal;
   const float alpha = point_.reflectance.alpha;
   const float n_out = glm::dot(normal, out_);
-  const float n_half = std::clamp(glm::dot(normal, glm::normalize(out_ + in)), 0.0f, 1.0f);
   const float root = std::sqrt(alpha * alpha + (1.0f - alpha * alpha) * n_out * n_out);
-  return ggx_distribution(n_half, alpha) / (2.0f * (n_out + root));
+  return ggx_distribution(normal, glm::normalize(out_ + in), alpha) / (2.0f * (n_out + root));
 }
 
 float Bsdf::pdf(const glm::vec3& in) const {

@@ -152,9 +152,13 @@ const AlbedoTables& tables() {
 
 }  // namespace
 
-float ggx_distribution(float n_h, float alpha) {
+float ggx_distribution(const glm::vec3& normal, const glm::vec3& half, float alpha) {
   const float a2 = alpha * alpha;
-  const float d = n_h * n_h * (a2 - 1.0f) + 1.0f;
+  // (n.h)^2 (a2 - 1) + 1 with the sine from the cross product: 1 - (n.h)^2 would have no digits left in a narrow lobe,
+  // which then holds up to 8 % too much.
+  const float cosine = glm::dot(normal, half);
+  const glm::vec3 across = glm::cross(normal, half);
+  const float d = a2 * cosine * cosine + glm::dot(across, across);
   return a2 / (pi * d * d);
 }
 
@@ -171,7 +175,7 @@ glm::vec3 evaluate(const Reflectance& r, const glm::vec3& normal, const glm::vec
   if (!r.has_specular() && r.layer_f0 == 0.0f && r.layer_f1 == 0.0f) return r.diffuse / pi;
   const glm::vec3 h = glm::normalize(out + in);
   const float s = schlick_weight(glm::dot(out, h));
-  const float lobe = ggx_distribution(std::min(glm::dot(normal, h), 1.0f), r.alpha) * ggx_visibility(n_l, n_v, r.alpha);
+  const float lobe = ggx_distribution(normal, h, r.alpha) * ggx_visibility(n_l, n_v, r.alpha);
   return r.diffuse / pi * (1.0f - (r.layer_f0 + r.layer_f1 * s)) + lobe * (r.specular_f0 + r.specular_f1 * s);
 }
 

@@ -29,8 +29,8 @@ struct Reflectance {
 /// @param normal,out,in unit; out and in point away from the surface
 glm::vec3 evaluate(const Reflectance& reflectance, const glm::vec3& normal, const glm::vec3& out, const glm::vec3& in);
 
-/// GGX distribution of normals, D(n.h), Walter et al. 2007 eq. 33. @param n_h in [0,1]
-float ggx_distribution(float n_h, float alpha);
+/// GGX distribution of normals, D, Walter et al. 2007 eq. 33. @param normal,half unit, on the same side
+float ggx_distribution(const glm::vec3& normal, const glm::vec3& half, float alpha);
 /// Height-correlated Smith masking-shadowing over 4 (n.l)(n.v): Heitz 2014 eq. 99. @param n_l,n_v in (0,1]
 float ggx_visibility(float n_l, float n_v, float alpha);
 

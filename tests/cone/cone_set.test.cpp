@@ -114,8 +114,9 @@ double lobe_mean_cosine(double alpha) {
   for (int i = 0; i < steps; ++i) {
     const double x = (i + 0.5) / steps, theta = 0.5 * pi * x * x * x;  // dense near the mirror direction
     const double jacobian = 1.5 * pi * x * x * std::sin(theta);
-    const float n_l = float(std::cos(theta)), n_h = float(std::cos(0.5 * theta));
-    const double weight = double(voxref::ggx_distribution(n_h, float(alpha))) *
+    const float n_l = float(std::cos(theta));
+    const glm::vec3 normal(0.0f, 0.0f, 1.0f), half(std::sin(0.5 * theta), 0.0, std::cos(0.5 * theta));
+    const double weight = double(voxref::ggx_distribution(normal, half, float(alpha))) *
                           voxref::ggx_visibility(n_l, 1.0f, float(alpha)) * std::cos(theta) * jacobian;
     lobe += weight;
     moment += weight * std::cos(theta);
