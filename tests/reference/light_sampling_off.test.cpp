@@ -156,8 +156,8 @@ TEST_CASE("With and without light sampling the mean is the same in Cornell's box
   for (const Scene& scene : {cornell_box(CornellLight::area), glossy_spheres()}) {
     View view;
     view.camera = scene.cameras[0];
-    view.width = view.height = 32;
-    expect_same_mean(scene, view, 3, 1024, 20000, 0.01);
+    view.width = view.height = 24;
+    expect_same_mean(scene, view, 3, 1024, 10000, 0.03);
   }
 }
 

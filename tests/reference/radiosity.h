@@ -37,8 +37,7 @@ inline double intersect(const Corners& t, const glm::dvec3& origin, const glm::d
 ///   B_i = rho_i (D_i + sum_j F_ij B_j),
 ///
 /// F_ij by Lambert's formula from the centre of i to the part of j above its horizon, seen or not seen along one ray; D
-/// the direct light, likewise, of lamps cut finer. Solved by Gauss-Seidel sweeps. Halving the elements' size divides
-/// the discretisation error by four where nothing throws shadows, by two where the elements do not follow their edges.
+/// the direct light, likewise, of lamps cut finer. Solved by Gauss-Seidel sweeps.
 class Radiosity {
  public:
   /// @param scene Lambertian, without textures; materials' backs are never seen

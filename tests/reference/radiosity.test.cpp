@@ -69,19 +69,16 @@ struct Comparison {
   }
 };
 
-/// The path tracer agrees within three standard errors and what radiosity itself may be off, its last change: its error
-/// falls about by half with each refinement. @param largest_change that the last refinement may make, relative
-/// @param bias relative, of the mean, that would be found with probability 0.9 however the two errors fall
-/// together
-void expect_agreement(const Comparison& comparison, double largest_change, double bias) {
+/// The path tracer agrees within three standard errors and what radiosity itself may be off.
+/// @param correction of the finest solution, relative @param own_error what that leaves
+/// @param bias of the mean, relative, that would be found with probability 0.9 however the two errors fall together
+void expect_agreement(const Comparison& comparison, const glm::dvec3& correction, const glm::dvec3& own_error,
+                      double bias) {
   for (int c = 0; c < 3; ++c) {
-    const double deviation = comparison.deviation[c], error = comparison.error[c];
-    const double last_change = std::abs(comparison.last_change[c]), before = std::abs(comparison.change_before[c]);
-    const double scatter = comparison.scatter[c], noise = comparison.noise[c];
-    CAPTURE(c, comparison.pixels, deviation, error, last_change, before, scatter, noise);
-    CHECK(last_change < largest_change);
-    CHECK(std::abs(deviation) < 3.0 * error + last_change);
-    CHECK(4.28 * error + 2.0 * last_change < bias);
+    const double deviation = comparison.deviation[c] - correction[c], error = comparison.error[c], own = own_error[c];
+    CAPTURE(c, comparison.pixels, deviation, error, own);
+    CHECK(std::abs(deviation) < 3.0 * error + own);
+    CHECK((3.0 + 1.28) * error + 2.0 * own < bias);
   }
 }
 
@@ -101,16 +98,22 @@ TEST_CASE("Radiosity in a closed room of one colour is emission over one less al
 }
 
 TEST_CASE("The path tracer agrees with radiosity in the empty Cornell box", "[radiosity]") {
+  // Nothing throws shadows: of second order, four times less with each refinement (measured: 4.8), so that a third of
+  // the last change is still missing. Richardson's extrapolation takes it off; as much again is granted for its own
+  // error.
   const Comparison comparison(false, 8192);
-  expect_agreement(comparison, 0.002, 0.005);
+  for (int c = 0; c < 3; ++c) CHECK(comparison.change_before[c] > 3.5 * std::abs(comparison.last_change[c]));
+  const glm::dvec3 missing = comparison.last_change / 3.0;
+  expect_agreement(comparison, -missing, glm::abs(missing), 0.003);
   // Pixel by pixel too: noise explains what differs but for 0.2 % of each pixel.
   for (int c = 0; c < 3; ++c) CHECK(comparison.scatter[c] < std::hypot(1.2 * comparison.noise[c], 0.002));
 }
 
 TEST_CASE("The path tracer agrees with radiosity in the Cornell box with its blocks", "[radiosity]") {
-  // Its elements do not follow the shadows' edges, so that the changes by refinement have either sign.
+  // Elements do not follow the shadows' edges, so that changes by refinement have either sign and no order: the last
+  // one stands for the error that is left.
   const Comparison comparison(true, 8192);
-  expect_agreement(comparison, 0.003, 0.01);
+  expect_agreement(comparison, glm::dvec3(0.0), glm::abs(comparison.last_change), 0.008);
 }
 
 }  // namespace voxref
