@@ -82,6 +82,7 @@ double slope(const std::vector<double>& samples, const std::vector<double>& erro
 struct Seeds {
   std::vector<double> deviations;  ///< relative, mean over an image
   double mean_square = 0.0;        ///< of (value - truth) / standard error, over pixels and seeds
+  double image_square = 0.0;       ///< the same of the images' means
   int least_spp = 1 << 30, most_spp = 0;
 
   Seeds(const KnownImage& image, PathOptions options, int count) {
@@ -91,6 +92,9 @@ struct Seeds {
       options.seed = 1000 + static_cast<uint64_t>(seed);
       const PathResult result = render(image, caster, options);
       deviations.push_back(0.0);
+      double image_truth = 0.0;
+      for (const double value : image.truth) image_truth += value / pixels;
+      image_square += std::pow((result.mean.g - image_truth) / result.mean_stderr.g, 2.0) / count;
       for (size_t i = 0; i < image.truth.size(); ++i) {
         const double difference = result.image.channel("G")[i] - image.truth[i];
         const double z = difference / result.image.channel("stderr.G")[i];
@@ -140,6 +144,10 @@ TEST_CASE("Errors divided by their standard errors have the variance of Student'
     const SquareLimits limits(15.0, 128.0 * 16.0, 3.0);
     CAPTURE(seeds.mean_square, limits.expected, limits.margin);
     CHECK(limits.contain(seeds.mean_square));
+    // The image's mean: pixels are independent, and so their degrees of freedom add up.
+    const SquareLimits image_limits(15.0 * 16.0, 128.0, 3.0);
+    CAPTURE(seeds.image_square, image_limits.expected, image_limits.margin);
+    CHECK(image_limits.contain(seeds.image_square));
     const Welch test(estimate(seeds.deviations), {});
     CAPTURE(test.difference, test.error);
     CHECK(test.p() > 0.001);
