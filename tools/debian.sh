@@ -1,9 +1,9 @@
 # Sourced by tools/demo and tools/test: what they need on a bare Debian 12, and the configured build folder.
 
-# Installs the packages that are missing; says what to do where that is not possible.
+# Installs the packages that are missing, and further ones given; says what to do where that is not possible.
 install_missing_packages() {
   local packages=(g++ make cmake ninja-build libembree-dev libglm-dev libtinygltf-dev libopenimageio-dev openimageio-tools
-    libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev catch2)
+    libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev catch2 "$@")
   if ! command -v dpkg-query >/dev/null; then
     echo "$0: no Debian here; the packages below must come from elsewhere: ${packages[*]}" >&2
     return

@@ -35,13 +35,19 @@ class Workplace {
   }
   fs::path path(const std::string& name) const { return folder_.path / "run" / name; }
 
-  /// @param before goes in front of the program, for instance "timeout 1"
-  Outcome run(const std::string& arguments, const std::string& before = "") const {
+  /// Runs a shell's commands in the folder, the program found as `voxref`.
+  Outcome shell(const std::string& commands) const {
     const std::string out = (folder_.path / "out").string(), err = (folder_.path / "err").string();
-    const std::string line = "cd '" + path("").string() + "' && " + before + " '" VOXREF_PROGRAM "' " + arguments +
-                             " >'" + out + "' 2>'" + err + "'";
+    const std::string programs = fs::path(VOXREF_PROGRAM).parent_path().string();
+    const std::string line = "cd '" + path("").string() + "' && export PATH='" + programs + "':\"$PATH\" && { " +
+                             commands + "; } >'" + out + "' 2>'" + err + "'";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, voxref::read_file(out), voxref::read_file(err)};
+  }
+
+  /// @param before goes in front of the program, for instance "timeout 1"
+  Outcome run(const std::string& arguments, const std::string& before = "") const {
+    return shell(before + " '" VOXREF_PROGRAM "' " + arguments);
   }
 
   json run_json(const std::string& arguments) const {
