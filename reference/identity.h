@@ -11,7 +11,7 @@ namespace voxref {
 std::optional<Part> parse_part(std::string_view text);
 
 /// Compares what two renders depend on, each one JSON object.
-/// @returns nothing where they agree, else the first key that differs with both values: "seed: 7, but 0"
+/// @returns nothing where they agree, else the first value that differs, by its place: "path.seed: 7, but 0"
 std::optional<std::string> difference_of(const std::string& expected, const std::string& found);
 
 }  // namespace voxref

@@ -7,6 +7,7 @@
 
 #include "bench_rays.h"
 #include "commands.h"
+#include "inputs.h"
 #include "json.h"
 #include "parallel.h"
 #include "parse.h"

@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "compare/report.h"
+#include "inputs.h"
 #include "json.h"
 #include "outputs.h"
 #include "parallel.h"
@@ -16,15 +17,9 @@ namespace voxref {
 
 namespace {
 
-struct Options {
-  CommonOptions common;
-  SceneOptions scene;
-  ViewOptions view;
+struct Options : ConeCommandOptions {
   PathOptions path;
-  SettingsOptions settings;
   std::optional<double> budget;
-  std::string output;
-  ConeTraceOutputs outputs;
 };
 
 std::vector<std::filesystem::path> written_files(const Options& options) {
@@ -114,15 +109,13 @@ int run_check(const Options& options) {
 void add_check(CLI::App& program, Run& run) {
   CLI::App* command = program.add_subcommand("check", "both renderers from one camera, compared, with a report page");
   const auto options = std::make_shared<Options>();
-  add_scene_options(*command, options->scene);
-  add_output_option(*command, options->output, "DIR", "folder for images, pictures, result.json and report.html");
-  add_value_option(*command, "--budget", "R", "exit with 1 when the relative error exceeds R (0.2 = 20 %)",
-                   [options](const std::string& text) { options->budget = parse_number("--budget", text, 0, 1e6); });
-  add_settings_options(*command, options->settings);
-  add_volumes_option(*command, options->outputs);
-  add_path_options(*command, options->path);
-  add_view_options(*command, options->view);
-  add_common_options(*command, options->common);
+  add_render_options(*command, *options, "DIR", "folder for images, pictures, result.json and report.html", [&] {
+    add_value_option(*command, "--budget", "R", "exit with 1 when the relative error exceeds R (0.2 = 20 %)",
+                     [options](const std::string& text) { options->budget = parse_number("--budget", text, 0, 1e6); });
+    add_settings_options(*command, options->settings);
+    add_volumes_option(*command, options->outputs);
+    add_path_options(*command, options->path);
+  });
   command->footer(
       "Ctrl-C writes neither images nor report, and exits with 2; volumes that are finished stay.\n\n"
       "Example:\n  voxref check scenes/cornell_box_point.glb -o out/cornell --spp 256 --budget 0.2");

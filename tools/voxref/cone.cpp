@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "file.h"
 #include "image/image_file.h"
+#include "inputs.h"
 #include "json.h"
 #include "outputs.h"
 #include "parallel.h"
@@ -14,16 +15,7 @@ namespace voxref {
 
 namespace {
 
-struct Options {
-  CommonOptions common;
-  SceneOptions scene;
-  ViewOptions view;
-  SettingsOptions settings;
-  std::string output;
-  ConeTraceOutputs outputs;
-};
-
-int run_cone(const Options& options) {
+int run_cone(const ConeCommandOptions& options) {
   const Settings settings = make_settings(options.settings);
   require_no_clash({options.scene.file, options.settings.config, {options.output}, options.outputs.volumes});
   require_writable(options.output);
@@ -57,13 +49,11 @@ std::string parameter_table() {
 
 void add_cone(CLI::App& program, Run& run) {
   CLI::App* command = program.add_subcommand("cone", "voxelizes, shades, filters and cone traces a scene");
-  const auto options = std::make_shared<Options>();
-  add_scene_options(*command, options->scene);
-  add_output_option(*command, options->output, "FILE", "OpenEXR file to write");
-  add_settings_options(*command, options->settings);
-  add_volumes_option(*command, options->outputs);
-  add_view_options(*command, options->view);
-  add_common_options(*command, options->common);
+  const auto options = std::make_shared<ConeCommandOptions>();
+  add_render_options(*command, *options, "FILE", "OpenEXR file to write", [&] {
+    add_settings_options(*command, options->settings);
+    add_volumes_option(*command, options->outputs);
+  });
   command->footer(parameter_table() +
                   "\nCtrl-C writes nothing, no volumes either, and exits with 2.\n\nExample:\n  voxref cone "
                   "scenes/cornell_box_point.glb -o cone.exr --set grid.resolution=128");

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "commands.h"
+#include "inputs.h"
 #include "json.h"
 #include "parallel.h"
 #include "summary.h"

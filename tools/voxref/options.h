@@ -45,12 +45,29 @@ struct SettingsOptions {
   std::vector<std::string> assignments;  ///< key=value
 };
 
+/// What every command takes that makes images: path, cone, check and stage.
+struct RenderCommandOptions {
+  CommonOptions common;
+  SceneOptions scene;
+  ViewOptions view;
+  std::string output;
+};
+
+/// What they take that cone trace.
+struct ConeCommandOptions : RenderCommandOptions {
+  SettingsOptions settings;
+  ConeTraceOutputs outputs;
+};
+
 void add_common_options(CLI::App& command, CommonOptions& options);
 /// The positional SCENE and what changes the scene as it is loaded.
-void add_scene_options(CLI::App& command, SceneOptions& options, bool required = true);
+void add_scene_options(CLI::App& command, SceneOptions& options);
 void add_view_options(CLI::App& command, ViewOptions& options);
 void add_path_options(CLI::App& command, PathOptions& options);
 void add_settings_options(CLI::App& command, SettingsOptions& options);
+/// All of RenderCommandOptions; in the help, what `add_own` adds stands behind SCENE and -o. @param what,help of -o
+void add_render_options(CLI::App& command, RenderCommandOptions& options, const std::string& what,
+                        const std::string& help, const std::function<void()>& add_own);
 /// --volumes, a folder that is checked at once.
 void add_volumes_option(CLI::App& command, ConeTraceOutputs& outputs);
 /// The required -o. @param what "FILE" or "DIR"
@@ -66,16 +83,6 @@ void on_run(CLI::App* command, Run& run, const std::function<int()>& work);
 /// @throws Error naming the first argument that nobody took, and the nearest flag
 void refuse_leftovers(const CLI::App& command);
 
-/// The camera that was asked for, else the scene's first, else one that frames the scene. @throws Error, also when the
-/// machine has less memory than an image of `bytes_per_pixel` needs
-View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_pixel);
-/// The most memory that a renderer holds at once, from its image's first pixel to the written file.
-size_t path_bytes_per_pixel(const PathOptions& options);
-/// The cone tracer's image of 23 float32 channels, and its copy in the order of the file.
-constexpr size_t cone_image_bytes_per_pixel = 4 * 23;
-constexpr size_t cone_bytes_per_pixel = 2 * cone_image_bytes_per_pixel;
-/// The profile, then the file, then the assignments. @throws Error with the file or flag, and the parameter
-Settings make_settings(const SettingsOptions& options);
 /// Checks before work begins that `folder` exists or could be made, and takes files. @throws Error with the path
 void require_folder(const std::filesystem::path& folder);
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <set>
 
 #include "commands.h"
 #include "error.h"
 #include "file.h"
 #include "image/image_file.h"
+#include "inputs.h"
 #include "json.h"
 #include "outputs.h"
 #include "parallel.h"
@@ -22,27 +22,18 @@ namespace voxref {
 
 namespace {
 
-struct Options {
-  CommonOptions common;
-  SceneOptions scene;
-  ViewOptions view;
+struct Options : RenderCommandOptions {
   PathOptions path;
-  std::string output;
 };
 
-/// The flags that have no say in the pixels of an image, or of its parts.
-const std::set<std::string> neutral_flags = {"SCENE",  "-o",       "--threads",    "--quiet", "--json",
-                                             "--part", "--resume", "--checkpoint", "--help"};
-
-/// What the pixels depend on: program, scene and flags as they were given. Flags unknown today are in it by themselves.
-nlohmann::json dependencies(const CLI::App& command, const Scene& scene) {
-  nlohmann::json json = {
-      {"version", version()}, {"libraries", program_provenance()["libraries"]}, {"scene_sha256", scene.sha256}};
-  for (const CLI::Option* option : command.get_options())
-    if (option->count() > 0 && !neutral_flags.contains(option->get_name())) {
-      const std::vector<std::string>& given = option->results();
-      json[option->get_name()] = given.size() == 1 ? nlohmann::json(given[0]) : nlohmann::json(given);
-    }
+/// What the pixels depend on, as values: a default that is typed out is the same render.
+nlohmann::json dependencies(const Options& options, const Scene& scene, const View& view) {
+  nlohmann::json json = provenance(scene, view);
+  // Neither where the scene lies, nor how it was asked for.
+  json.erase("scene");
+  json.erase("command_line");
+  json["load"] = describe(options.scene);
+  json["path"] = describe(options.path);
   return json;
 }
 
@@ -58,9 +49,9 @@ int run_path(Options& options, const CLI::App& command) {
   const View view = make_view(options.view, scene, path_bytes_per_pixel(options.path));
   const Caster caster(scene);
   const bool is_part = command.count("--part") > 0;
-  nlohmann::json depends = dependencies(command, scene);
+  nlohmann::json depends = dependencies(options, scene, view);
   const std::string render = depends.dump();
-  if (is_part) depends["--part"] = fmt::format("{}/{}", options.path.part.index, options.path.part.count);
+  if (is_part) depends["part"] = fmt::format("{}/{}", options.path.part.index, options.path.part.count);
   options.path.checkpoint.render = depends.dump();
   PathResult result = path_trace(scene, caster, view, options.path, terminal.progress());
 
@@ -100,20 +91,18 @@ void add_farm_options(CLI::App& command, PathOptions& options) {
 void add_path(CLI::App& program, Run& run) {
   CLI::App* command = program.add_subcommand("path", "path traces a scene: the ground truth, with its standard error");
   const auto options = std::make_shared<Options>();
-  add_scene_options(*command, options->scene);
-  add_output_option(*command, options->output, "FILE", "OpenEXR file to write");
-  add_path_options(*command, options->path);
-  add_farm_options(*command, options->path);
-  add_view_options(*command, options->view);
-  add_common_options(*command, options->common);
+  add_render_options(*command, *options, "FILE", "OpenEXR file to write", [&] {
+    add_path_options(*command, options->path);
+    add_farm_options(*command, options->path);
+  });
   command->footer(
       "Ctrl-C writes the samples that there are, and exits with 1.\n\n"
       "Example:\n"
       "  voxref path scenes/cornell_box.glb -o cornell.exr --noise 0.01 --size 256x256\n"
-      "Killed renders go on, and so do those of a Slurm job array that is requeued (sbatch --array=1-8 --requeue):\n"
-      "  voxref path scene.glb -o part$SLURM_ARRAY_TASK_ID.exr --spp 4096 --part $SLURM_ARRAY_TASK_ID/8 --resume\n"
-      "GNU parallel does the same on the machines it knows; merge joins the parts to the bits of a single render:\n"
-      "  seq 8 | parallel voxref path scene.glb -o part{}.exr --spp 4096 --part {}/8 --resume\n"
+      "A killed render goes on with --resume. Parts may be rendered anywhere: with GNU parallel, or, as "
+      "tools/farm.sbatch\n"
+      "does it, as a Slurm job array; merge joins them to the bits of a single render:\n"
+      "  seq 8 | parallel --retries 3 voxref path scene.glb -o part{}.exr --part {}/8 --resume --spp 4096\n"
       "  voxref merge part*.exr -o whole.exr");
   on_run(command, run, [options, command] { return run_path(*options, *command); });
 }

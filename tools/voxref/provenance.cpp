@@ -19,6 +19,11 @@ std::string quoted(const std::string& argument) {
   return result + "'";
 }
 
+template <class Value>
+nlohmann::json given(const std::optional<Value>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
 nlohmann::json describe(const View& view) {
   const glm::mat4& frame = view.camera.world_from_camera;
   nlohmann::json json = {{"name", view.camera.name},
@@ -56,17 +61,27 @@ nlohmann::json provenance(const Scene& scene, const View& view) {
   return json;
 }
 
+nlohmann::json describe(const SceneOptions& options) {
+  nlohmann::json suns = nlohmann::json::array();
+  for (const Light& sun : options.suns)
+    suns.push_back({{"direction", to_json(sun.direction)}, {"irradiance", to_json(sun.intensity)}});
+  return {{"light_scale", options.load.light_scale}, {"at", given(options.load.time)}, {"suns", suns}};
+}
+
+nlohmann::json describe(const PathOptions& options) {
+  return {{"spp", options.spp > 0 ? nlohmann::json(options.spp) : nlohmann::json()},
+          {"noise", given(options.noise)},
+          {"time", given(options.seconds)},
+          {"max_depth", given(options.max_depth)},
+          {"seed", options.seed},
+          {"bounces", options.extra.bounces},
+          {"irradiance", options.extra.irradiance}};
+}
+
 void add_path_provenance(nlohmann::json& provenance, const PathOptions& options, int spp) {
-  const auto given = [](const auto& value) { return value ? nlohmann::json(*value) : nlohmann::json(); };
   provenance["seed"] = options.seed;
   provenance["spp"] = spp;
-  provenance["path"] = {{"spp", options.spp > 0 ? nlohmann::json(options.spp) : nlohmann::json()},
-                        {"noise", given(options.noise)},
-                        {"time", given(options.seconds)},
-                        {"max_depth", given(options.max_depth)},
-                        {"seed", options.seed},
-                        {"bounces", options.extra.bounces},
-                        {"irradiance", options.extra.irradiance}};
+  provenance["path"] = describe(options);
 }
 
 void attach(Image& image, const nlohmann::json& provenance) {

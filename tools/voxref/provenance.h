@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "options.h"
 #include "reference/path.h"
 #include "scene/scene.h"
 #include "settings.h"
@@ -21,7 +22,11 @@ nlohmann::json program_provenance();
 /// SHA-256, size and camera.
 nlohmann::json provenance(const Scene& scene, const View& view);
 
-/// Adds `seed`, `spp`, the samples that were taken, and `path`: all options of the path tracer, null where not given.
+/// What a command line changes in a scene as it is loaded, as far as the path tracer sees it; null where not given.
+nlohmann::json describe(const SceneOptions& options);
+/// All that the pixels depend on, null where not given.
+nlohmann::json describe(const PathOptions& options);
+/// Adds `seed`, `spp`, the samples that were taken, and `path`, describe(options).
 void add_path_provenance(nlohmann::json& provenance, const PathOptions& options, int spp);
 
 /// Puts every key into the header as the string attribute `voxref:KEY`.

@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "cone/medium.h"
 #include "image/image_file.h"
+#include "inputs.h"
 #include "json.h"
 #include "outputs.h"
 #include "parallel.h"
@@ -15,12 +16,9 @@ namespace voxref {
 
 namespace {
 
-struct Options {
-  CommonOptions common;
-  SceneOptions scene;
-  ViewOptions view;
+struct Options : RenderCommandOptions {
   SettingsOptions settings;
-  std::string stage, from, output;
+  std::string stage, from;
 };
 
 /// What gather writes.
@@ -128,12 +126,11 @@ void add_stage(CLI::App& program, Run& run) {
           "aniso_* where there is no bounce -> gather.exr)")
       ->required()
       ->type_name("");
-  add_scene_options(*command, options->scene, /*required=*/false);
-  command->add_option("--from", options->from, "folder of volumes to read")->required()->type_name("DIR");
-  add_output_option(*command, options->output, "DIR", "folder for what the stage makes");
-  add_settings_options(*command, options->settings);
-  add_view_options(*command, options->view);
-  add_common_options(*command, options->common);
+  add_render_options(*command, *options, "DIR", "folder for what the stage makes", [&] {
+    command->add_option("--from", options->from, "folder of volumes to read")->required()->type_name("DIR");
+    add_settings_options(*command, options->settings);
+  });
+  command->get_option("SCENE")->required(false);
   command->footer(
       "shade and gather need SCENE.\n\nExample:\n"
       "  voxref cone scenes/cornell_box_point.glb -o cone.exr --volumes volumes\n"

@@ -4,16 +4,6 @@
 
 namespace voxref {
 
-Scene load_scene(const SceneOptions& options, Terminal& terminal) {
-  Scene scene = load_gltf(options.file, options.load);
-  for (Light sun : options.suns) {
-    sun.intensity *= options.load.light_scale;
-    scene.lights.push_back(sun);
-  }
-  for (const std::string& warning : scene.warnings) terminal.warn("voxref: warning: " + warning);
-  return scene;
-}
-
 std::string byte_count(size_t bytes) {
   const double count = static_cast<double>(bytes);
   if (count >= 0x1p30) return fmt::format("{:.2f} GiB", count * 0x1p-30);

@@ -5,9 +5,6 @@
 
 namespace voxref {
 
-/// Loads the scene and says what was ignored in it.
-Scene load_scene(const SceneOptions& options, Terminal& terminal);
-
 /// The result in a few aligned lines, on the terminal as it is configured.
 void say(Terminal& terminal, const PathResult& result);
 void say(Terminal& terminal, const ConeTraceResult& result);
