@@ -47,13 +47,14 @@ std::string still_running(const Workplace& place) {
 TEST_CASE("a Slurm job array, one task requeued half-way, joins to the bits of one render", "[farm]") {
   const Workplace place;
   if (!installed(place, "slurmctld slurmd munged sbatch")) VOXREF_SKIP("slurm is not installed");
-  // A task that waits for its checkpoint never waits long: the render writes twenty a second.
+  // Slurm lets a requeued task wait for two minutes, unless told otherwise.
   voxref::write_text(place.path("farm.sh"), R"(
 set -e
 job=$(sbatch --parsable --array=1-3 ')" + tools +
                                                 R"(farm.sbatch' 3 point.glb whole.exr)" + render + R"()
 until [ -e whole.part1.exr.checkpoint ] || [ -e whole.part1.exr ]; do sleep 0.05; done
 scontrol requeue ${job}_1
+until scontrol update jobid=${job}_1 starttime=now 2>/dev/null; do sleep 0.1; done
 sbatch --wait --dependency=afterok:$job --output=merge.log --wrap 'voxref merge whole.part*.exr -o whole.exr'
 scontrol --oneliner show job ${job}_1 | grep -o 'Restarts=[0-9]*'
 )");
