@@ -43,6 +43,7 @@ struct Integrator::State {
   glm::vec3 throughput{1.0f};  // product of BSDF x cosine / pdf so far
   float bsdf_pdf = 0.0f;       // with which the vertex was found, per solid angle; 0: by the camera
   int depth = 0;               // surfaces before this vertex
+  Receiver previous{};         // the vertex before this one, where there is one
 
   uint32_t dimension(Dimension set) const { return 1 + static_cast<uint32_t>(depth) * dimensions_per_vertex + set; }
   /// Radiance that was scattered `times` times on its way to the camera.
@@ -96,14 +97,15 @@ Layers Integrator::trace(const std::optional<PathVertex>& seen, const Sampler& s
 glm::vec3 Integrator::emitted(const State& state) const {
   const SurfacePoint& surface = state.vertex->surface;
   if (state.bsdf_pdf == 0.0f) return surface.emission;
-  const float light_pdf = lights_.emitter_pdf(surface.triangle, state.vertex->to_previous, state.vertex->distance);
+  const float light_pdf =
+      lights_.emitter_pdf(state.previous, surface.triangle, state.vertex->to_previous, state.vertex->distance);
   return power_heuristic(state.bsdf_pdf, light_pdf) * surface.emission;
 }
 
 void Integrator::add_punctual(State& state, const Bsdf& bsdf) const {
   const SurfacePoint& surface = state.vertex->surface;
   const uint32_t bits = lights_.punctual_count() > 1 ? state.sampler.bits_1d(state.dimension(choose_punctual)) : 0;
-  const std::optional<PunctualSample> light = lights_.sample_punctual(surface.position, surface.shading_normal, bits);
+  const std::optional<PunctualSample> light = lights_.sample_punctual({surface.position, surface.shading_normal}, bits);
   if (!light) return;
   const glm::vec3 radiance = bsdf.value(light->to_light) * light->irradiance;
   if (radiance == glm::vec3(0.0f)) return;
@@ -115,8 +117,8 @@ void Integrator::add_punctual(State& state, const Bsdf& bsdf) const {
 
 void Integrator::add_emitters(State& state, const Bsdf& bsdf) const {
   const SurfacePoint& surface = state.vertex->surface;
-  const std::optional<EmitterSample> light =
-      lights_.sample_emitter(surface.position, state.sampler.bits_2d(state.dimension(point_on_emitter)));
+  const std::optional<EmitterSample> light = lights_.sample_emitter(
+      {surface.position, surface.shading_normal}, state.sampler.bits_2d(state.dimension(point_on_emitter)));
   if (!light) return;
   const glm::vec3 radiance = bsdf.value(light->to_light) * light->radiance;
   if (radiance == glm::vec3(0.0f)) return;
@@ -149,6 +151,7 @@ bool Integrator::scatter(State& state, const Bsdf& bsdf) const {
   }
   state.bsdf_pdf = next->pdf;
   const SurfacePoint& surface = state.vertex->surface;
+  state.previous = {surface.position, surface.shading_normal};
   cast(caster_.leave(surface.position, surface.geometric_normal, next->in), state.vertex, state.counts);
   return true;
 }

@@ -13,45 +13,6 @@
 
 namespace voxref {
 
-AliasTable::AliasTable(std::span<const double> weights) {
-  const size_t count = weights.size();
-  double total = 0.0;
-  for (const double weight : weights) total += weight;
-
-  // Vose: entries below the mean share their slot with one above it.
-  std::vector<double> scaled(count, 1.0);
-  std::vector<uint32_t> small, large;
-  entries_.resize(count);
-  for (uint32_t i = 0; i < count; ++i) {
-    if (total > 0.0) scaled[i] = weights[i] / total * static_cast<double>(count);
-    entries_[i] = {uint64_t{1} << 32, i, static_cast<float>(scaled[i] / static_cast<double>(count))};
-    (scaled[i] < 1.0 ? small : large).push_back(i);
-  }
-  while (!small.empty() && !large.empty()) {
-    const uint32_t below = small.back(), above = large.back();
-    small.pop_back();
-    entries_[below].threshold = static_cast<uint64_t>(scaled[below] * 0x1p32);
-    entries_[below].alias = above;
-    scaled[above] -= 1.0 - scaled[below];
-    if (scaled[above] >= 1.0) continue;
-    large.pop_back();
-    small.push_back(above);
-  }
-}
-
-AliasTable::Choice AliasTable::choose(uint32_t bits) const {
-  const uint64_t product = uint64_t{bits} * entries_.size();  // the slot in the upper half, a fraction in the lower
-  const auto slot = static_cast<uint32_t>(product >> 32);
-  const uint64_t fraction = product & 0xffffffffu;
-  const uint64_t threshold = entries_[slot].threshold;
-  const bool own = fraction < threshold;
-  const uint64_t place = own ? fraction : fraction - threshold;
-  const uint64_t width = own ? threshold : (uint64_t{1} << 32) - threshold;
-  // Rounding of the two may reach 1, which the largest float below it stands in for.
-  const float rest = std::min(static_cast<float>(place) / static_cast<float>(width), 0x1.fffffep-1f);
-  return {own ? slot : entries_[slot].alias, rest};
-}
-
 namespace {
 
 // Up to here every light's irradiance at the point is computed, which costs less than a shadow ray that finds nothing.
@@ -60,18 +21,21 @@ constexpr size_t few_lights = 4;
 // Mean emission over a textured triangle from the centres of this many parts along each edge. It only steers sampling.
 constexpr int emission_parts = 4;
 
-double power(const Light& light, double scene_radius) {
-  const double intensity = luminance(light.intensity);
-  constexpr double pi = std::numbers::pi;
-  switch (light.type) {
-    case LightType::point:
-      return 4.0 * pi * intensity;
-    case LightType::spot:
-      return 2.0 * pi * (1.0 - light.cos_outer) * intensity;
-    case LightType::directional:
-      return pi * scene_radius * scene_radius * intensity;
-  }
-  return 0.0;
+LightBounds bounds_of(const Light& light) {
+  constexpr float pi = std::numbers::pi_v<float>;
+  LightBounds bounds;
+  if (light.type == LightType::directional) return bounds;  // of no intensity: it is nowhere
+  bounds.box.add(light.position);
+  bounds.axis = light.direction;
+  bounds.spread = light.type == LightType::point ? pi : 0.0f;
+  bounds.reach = light.type == LightType::point ? 0.5f * pi : std::acos(std::clamp(light.cos_outer, 0.0f, 1.0f));
+  bounds.intensity = luminance(light.intensity);
+  return bounds;
+}
+
+/// Luminance of the irradiance on the receiver.
+float weigh(const Illumination& light, const Receiver& receiver) {
+  return luminance(light.irradiance) * std::max(glm::dot(receiver.normal, light.to_light), 0.0f);
 }
 
 glm::vec3 mean_emission(const Materials& materials, uint32_t triangle) {
@@ -94,14 +58,18 @@ LightSampler::LightSampler(const Scene& scene, const Materials& materials) : sce
 }
 
 void LightSampler::add_punctual() {
-  const double radius = 0.5 * glm::length(scene_.bounds().extent());
-  std::vector<double> weights;
-  for (const Light& light : scene_.lights) weights.push_back(power(light, radius));
-  punctual_ = AliasTable(weights);
+  if (scene_.lights.size() <= few_lights) return;
+  std::vector<LightBounds> bounds;
+  for (uint32_t i = 0; i < scene_.lights.size(); ++i) {
+    bounds.push_back(bounds_of(scene_.lights[i]));
+    if (scene_.lights[i].type == LightType::directional) directional_.push_back(i);
+  }
+  punctual_tree_ = LightTree(bounds);
 }
 
 void LightSampler::add_emitters() {
-  std::vector<double> weights;
+  constexpr float pi = std::numbers::pi_v<float>;
+  std::vector<LightBounds> bounds;
   for (uint32_t triangle = 0; triangle < scene_.triangles.size(); ++triangle) {
     const Material& material = scene_.materials[scene_.triangle_materials[triangle]];
     if (!material.emissive()) continue;
@@ -116,47 +84,43 @@ void LightSampler::add_emitters() {
     emitter.varies = material.emission_texture || material.alpha_mode == AlphaMode::mask;
     emitter.emission = emitter.varies ? mean_emission(materials_, triangle) : material.emission;
     emitter.double_sided = material.double_sided;
-    const double weight = 0.5 * twice_area * luminance(emitter.emission) * (emitter.double_sided ? 2.0 : 1.0);
+    emitter.area = 0.5f * twice_area;
+    const float intensity = emitter.area * luminance(emitter.emission);
     // What is never drawn is still found by the BSDF's rays, which then count in full.
-    if (!(weight > 0.0)) continue;
+    if (!(intensity > 0.0f)) continue;
     emitter.normal = normal / twice_area;
     emitters_.push_back(emitter);
-    weights.push_back(weight);
+    Bounds box;
+    for (int corner = 0; corner < 3; ++corner) box.add(scene_.positions[corners[corner]]);
+    bounds.push_back({box, emitter.normal, emitter.double_sided ? pi : 0.0f, 0.5f * pi, intensity});
   }
   if (emitters_.empty()) return;
-  emitter_table_ = AliasTable(weights);
+  emitter_tree_ = LightTree(bounds);
   emitter_of_triangle_.assign(scene_.triangles.size(), Hit::none);
-  for (uint32_t i = 0; i < emitters_.size(); ++i) {
-    Emitter& emitter = emitters_[i];
-    const float area = 0.5f * glm::length(glm::cross(emitter.edge_u, emitter.edge_v));
-    emitter.area_pdf = emitter_table_.probability(i) / area;
-    emitter_of_triangle_[emitter.triangle] = i;
-  }
+  for (uint32_t i = 0; i < emitters_.size(); ++i) emitter_of_triangle_[emitters_[i].triangle] = i;
 }
 
-std::optional<PunctualSample> LightSampler::sample_punctual(const glm::vec3& point, const glm::vec3& normal,
-                                                            uint32_t bits) const {
+std::optional<PunctualSample> LightSampler::sample_punctual(const Receiver& receiver, uint32_t bits) const {
   const size_t count = scene_.lights.size();
-  if (count > few_lights) {
-    const uint32_t chosen = punctual_.choose(bits).index;
-    const Illumination light = illuminate(scene_.lights[chosen], point);
-    return PunctualSample{light.to_light, light.distance, light.irradiance / punctual_.probability(chosen)};
-  }
-  if (count == 1) {
-    const Illumination light = illuminate(scene_.lights[0], point);
-    if (glm::dot(normal, light.to_light) <= 0.0f) return std::nullopt;
-    std::optional<PunctualSample> sample(std::in_place);
-    sample->to_light = light.to_light;
-    sample->distance = light.distance;
-    sample->irradiance = light.irradiance;
-    return sample;
-  }
+  if (count > few_lights) return sample_many(receiver, bits);
+  if (count > 1) return sample_few(receiver, bits);
+  const Illumination light = illuminate(scene_.lights[0], receiver.position);
+  if (glm::dot(receiver.normal, light.to_light) <= 0.0f) return std::nullopt;
+  std::optional<PunctualSample> sample(std::in_place);
+  sample->to_light = light.to_light;
+  sample->distance = light.distance;
+  sample->irradiance = light.irradiance;
+  return sample;
+}
+
+std::optional<PunctualSample> LightSampler::sample_few(const Receiver& receiver, uint32_t bits) const {
+  const size_t count = scene_.lights.size();
   std::array<Illumination, few_lights> lights;
   std::array<float, few_lights> weights{};
   float total = 0.0f;
   for (size_t i = 0; i < count; ++i) {
-    lights[i] = illuminate(scene_.lights[i], point);
-    weights[i] = luminance(lights[i].irradiance) * std::max(glm::dot(normal, lights[i].to_light), 0.0f);
+    lights[i] = illuminate(scene_.lights[i], receiver.position);
+    weights[i] = weigh(lights[i], receiver);
     total += weights[i];
   }
   if (total == 0.0f) return std::nullopt;  // a NaN goes on, to be counted
@@ -170,19 +134,39 @@ std::optional<PunctualSample> LightSampler::sample_punctual(const glm::vec3& poi
   return PunctualSample{light.to_light, light.distance, light.irradiance * (total / weights[chosen])};
 }
 
-std::optional<EmitterSample> LightSampler::sample_emitter(const glm::vec3& point, const glm::uvec2& bits) const {
-  const AliasTable::Choice choice = emitter_table_.choose(bits.x);
-  const Emitter& emitter = emitters_[choice.index];
-  const glm::vec2 uv = uniform_triangle({choice.rest, unit_float(bits.y)});
+std::optional<PunctualSample> LightSampler::sample_many(const Receiver& receiver, uint32_t bits) const {
+  const float in_tree = punctual_tree_.irradiance(receiver);
+  float total = in_tree;
+  for (const uint32_t i : directional_) total += weigh(illuminate(scene_.lights[i], receiver.position), receiver);
+  double left = bits * 0x1p-32 * total;
+  for (const uint32_t i : directional_) {
+    const Illumination light = illuminate(scene_.lights[i], receiver.position);
+    const float weight = weigh(light, receiver);
+    if (left < weight) return PunctualSample{light.to_light, light.distance, light.irradiance * (total / weight)};
+    left -= weight;
+  }
+  if (!(in_tree > 0.0f)) return std::nullopt;
+  constexpr double below_one = 1.0 - 0x1p-53;
+  const auto choice = punctual_tree_.choose(receiver, std::min(left / in_tree, below_one));
+  if (!choice) return std::nullopt;
+  const Illumination light = illuminate(scene_.lights[choice->index], receiver.position);
+  return PunctualSample{light.to_light, light.distance, light.irradiance * (total / (in_tree * choice->probability))};
+}
+
+std::optional<EmitterSample> LightSampler::sample_emitter(const Receiver& receiver, const glm::uvec2& bits) const {
+  const std::optional<LightTree::Choice> choice = emitter_tree_.choose(receiver, bits.x * 0x1p-32);
+  if (!choice) return std::nullopt;
+  const Emitter& emitter = emitters_[choice->index];
+  const glm::vec2 uv = uniform_triangle({choice->rest, unit_float(bits.y)});
   EmitterSample sample;
   sample.position = emitter.origin + uv.x * emitter.edge_u + uv.y * emitter.edge_v;
-  const glm::vec3 offset = sample.position - point;
+  const glm::vec3 offset = sample.position - receiver.position;
   const float distance = glm::length(offset);
   sample.to_light = offset / distance;
   const float cosine = -glm::dot(emitter.normal, sample.to_light);
   if (!(cosine > 0.0f || (emitter.double_sided && cosine < 0.0f))) return std::nullopt;
   sample.normal = cosine > 0.0f ? emitter.normal : -emitter.normal;
-  sample.pdf = emitter.area_pdf * distance * distance / std::abs(cosine);
+  sample.pdf = choice->probability * distance * distance / (emitter.area * std::abs(cosine));
   sample.radiance = emitter.emission;
   if (emitter.varies) {
     const MaterialPoint material = materials_.point(emitter.triangle, uv);
@@ -191,11 +175,14 @@ std::optional<EmitterSample> LightSampler::sample_emitter(const glm::vec3& point
   return sample;
 }
 
-float LightSampler::emitter_pdf(uint32_t triangle, const glm::vec3& direction, float distance) const {
+float LightSampler::emitter_pdf(const Receiver& receiver, uint32_t triangle, const glm::vec3& direction,
+                                float distance) const {
   if (emitter_of_triangle_.empty() || emitter_of_triangle_[triangle] == Hit::none) return 0.0f;
-  const Emitter& emitter = emitters_[emitter_of_triangle_[triangle]];
+  const uint32_t index = emitter_of_triangle_[triangle];
+  const Emitter& emitter = emitters_[index];
   const float cosine = std::abs(glm::dot(emitter.normal, direction));
-  return cosine > 0.0f ? emitter.area_pdf * distance * distance / cosine : 0.0f;
+  if (!(cosine > 0.0f)) return 0.0f;
+  return emitter_tree_.probability(index, receiver) * distance * distance / (emitter.area * cosine);
 }
 
 }  // namespace voxref

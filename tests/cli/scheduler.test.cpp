@@ -54,7 +54,8 @@ job=$(sbatch --parsable --array=1-3 ')" + tools +
                                                 R"(farm.sbatch' 3 point.glb whole.exr)" + render + R"()
 until [ -e whole.part1.exr.checkpoint ] || [ -e whole.part1.exr ]; do sleep 0.05; done
 scontrol requeue ${job}_1
-until scontrol update jobid=${job}_1 starttime=now 2>/dev/null; do sleep 0.1; done
+until scontrol show job ${job}_1 | grep -q JobState=PENDING; do sleep 0.1; done
+scontrol update jobid=${job}_1 starttime=now
 sbatch --wait --dependency=afterok:$job --output=merge.log --wrap 'voxref merge whole.part*.exr -o whole.exr'
 scontrol --oneliner show job ${job}_1 | grep -o 'Restarts=[0-9]*'
 )");

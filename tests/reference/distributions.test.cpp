@@ -230,7 +230,8 @@ TEST_CASE("Points of emissive triangles, textured ones too, follow their density
   const Scene& scene = lights.scene;
   const Materials materials(scene);
   const LightSampler sampler(scene, materials);
-  for (const glm::vec3& receiver : {glm::vec3(0.0f), glm::vec3(0.7f, 0.3f, 0.4f)}) {
+  for (const glm::vec3& position : {glm::vec3(0.0f), glm::vec3(0.7f, 0.3f, 0.4f)}) {
+    const Receiver receiver = {position, glm::normalize(glm::vec3(0.3f, 1.0f, -0.2f))};
     std::vector<double> observed(4 * lights.emissive.size() + 1), expected = observed;
     const auto part_of = [](const glm::dvec2& uv) {
       return uv.x + uv.y < 0.5 ? 0 : uv.x > 0.5 ? 1 : uv.y > 0.5 ? 2 : 3;
@@ -260,11 +261,11 @@ TEST_CASE("Points of emissive triangles, textured ones too, follow their density
         for (int j = 0; j < side; ++j) {
           glm::dvec2 uv((i + 1.0 / 3.0) / side, (j + 1.0 / 3.0) / side);  // centres of the cells' lower halves ...
           if (i + j >= side) uv = 1.0 - uv;                               // ... and of the upper ones
-          const glm::dvec3 offset = a + uv.x * u + uv.y * v - glm::dvec3(receiver);
+          const glm::dvec3 offset = a + uv.x * u + uv.y * v - glm::dvec3(position);
           const double distance = glm::length(offset), cosine = -glm::dot(offset, glm::normalize(glm::cross(u, v)));
           if (cosine <= 0.0) continue;
-          const double density =
-              sampler.emitter_pdf(lights.emissive[k], glm::vec3(offset / distance), static_cast<float>(distance));
+          const double density = sampler.emitter_pdf(receiver, lights.emissive[k], glm::vec3(offset / distance),
+                                                     static_cast<float>(distance));
           const double solid_angle =
               glm::length(glm::cross(u, v)) / 2.0 / (side * side) * cosine / (distance * distance * distance);
           expected[4 * k + static_cast<size_t>(part_of(uv))] += density * solid_angle * draws;
@@ -294,7 +295,7 @@ TEST_CASE("Punctual lights are chosen as often as what is divided by says", "[di
     const LightSampler sampler(scene, materials);
     std::vector<double> observed(scene.lights.size()), probability(scene.lights.size());
     for (uint32_t i = 0; i < draws; ++i) {
-      const auto sample = sampler.sample_punctual(point, normal, independent(i, 7).bits_1d(0));
+      const auto sample = sampler.sample_punctual({point, normal}, independent(i, 7).bits_1d(0));
       REQUIRE(sample);
       size_t nearest = 0;
       for (size_t k = 1; k < scene.lights.size(); ++k)

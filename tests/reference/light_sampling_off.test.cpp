@@ -123,6 +123,21 @@ TEST_CASE("With and without light sampling the mean is the same under a large la
   expect_same_mean(scene, room_view(), 3, 128, 3000, 0.009);
 }
 
+TEST_CASE("With and without light sampling the mean is the same under a hundred lamps", "[path]") {
+  // 7 x 7 lamps tilted to all sides, half of them of nine times the brightness: the choice among them must be weighed
+  // right.
+  Scene scene = room(lambert(glm::vec3(0.2f)), glossy(0.5f, 0.4f));
+  const uint32_t dim = add_material(scene, lambert(glm::vec3(0.2f), glm::vec3(2.0f)));
+  const uint32_t bright = add_material(scene, lambert(glm::vec3(0.2f), glm::vec3(18.0f)));
+  for (int i = 0; i < 7; ++i)
+    for (int j = 0; j < 7; ++j) {
+      const float tilt = 0.05f * static_cast<float>((i + 2 * j) % 5 - 2);
+      add_quad(scene, {-0.9f + 0.25f * static_cast<float>(i), 0.6f, -0.9f + 0.25f * static_cast<float>(j)},
+               {0.22f, tilt, 0.0f}, {0.0f, -tilt, 0.22f}, (i + j) % 2 ? dim : bright);
+    }
+  expect_same_mean(scene, room_view(), 3, 128, 3000, 0.02);
+}
+
 TEST_CASE("With and without light sampling the mean is the same where all is glossy", "[path]") {
   Scene scene = room(lambert(glm::vec3(0.2f), glm::vec3(5.0f)), glossy(1.0f, 0.3f));
   scene.materials[0] = glossy(0.0f, 0.5f);  // the walls: plastic
