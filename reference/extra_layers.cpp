@@ -14,13 +14,14 @@ std::vector<std::string> ExtraLayers::names() const {
 }
 
 ExtraTracer::ExtraTracer(const Scene& scene, const Surfaces& surfaces, const Caster& caster,
-                         const glm::vec3& background, std::optional<int> max_depth, const ExtraLayers& layers)
+                         const glm::vec3& background, const Transport& transport, const ExtraLayers& layers)
     : layers_(layers) {
-  const int most = max_depth.value_or(std::numeric_limits<int>::max());
+  const int most = transport.max_depth.value_or(std::numeric_limits<int>::max());
   cut_.reserve(static_cast<size_t>(layers.bounces));
   for (int k = 1; k <= layers.bounces; ++k)
-    cut_.emplace_back(scene, surfaces, caster, background, std::min(k + 1, most));
-  if (layers.irradiance) onwards_.emplace(scene, surfaces, caster, background, max_depth);
+    cut_.emplace_back(scene, surfaces, caster, background,
+                      Transport{std::min(k + 1, most), transport.energy_compensation});
+  if (layers.irradiance) onwards_.emplace(scene, surfaces, caster, background, transport);
 }
 
 void ExtraTracer::trace(const std::optional<PathVertex>& seen, const Sampler& sampler, std::span<glm::dvec3> sums,

@@ -25,9 +25,8 @@ struct ExtraLayers {
 /// scatter if it were white and Lambertian, whose BSDF is 1 / pi.
 class ExtraTracer {
  public:
-  /// @param max_depth as PathOptions::max_depth
   ExtraTracer(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
-              std::optional<int> max_depth, const ExtraLayers& layers);
+              const Transport& transport, const ExtraLayers& layers);
 
   size_t count() const { return layers_.count(); }
   /// Adds one sample to `sums`, count() of them.

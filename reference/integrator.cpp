@@ -56,12 +56,13 @@ struct Integrator::State {
 };
 
 Integrator::Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
-                       std::optional<int> max_depth)
+                       const Transport& transport)
     : surfaces_(surfaces),
       caster_(caster),
       lights_(scene, surfaces.materials()),
       background_(background),
-      max_depth_(max_depth.value_or(std::numeric_limits<int>::max())),
+      max_depth_(transport.max_depth.value_or(std::numeric_limits<int>::max())),
+      compensates_(transport.energy_compensation),
       light_can_be_hit_(scene.has_emission() || background != glm::vec3(0.0f)) {}
 
 void Integrator::cast(const Ray& ray, std::optional<PathVertex>& vertex, PathCounts& counts) const {
@@ -79,7 +80,9 @@ Layers Integrator::trace(const std::optional<PathVertex>& seen, const Sampler& s
       state.add(state.depth, state.throughput * background_);
       break;
     }
-    const SurfacePoint& surface = state.vertex->surface;
+    SurfacePoint& surface = state.vertex->surface;
+    if (compensates_)
+      compensate_energy(surface.reflectance, glm::dot(surface.shading_normal, state.vertex->to_previous));
     if (surface.emission != glm::vec3(0.0f)) state.add(state.depth, state.throughput * emitted(state));
     if (state.depth >= max_depth_ || surface.reflectance.black()) break;
 

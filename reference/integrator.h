@@ -30,6 +30,12 @@ struct PathVertex {
   SurfacePoint surface;
 };
 
+/// Which light transport is estimated.
+struct Transport {
+  std::optional<int> max_depth;      ///< as PathOptions::max_depth
+  bool energy_compensation = false;  ///< as PathOptions::energy_compensation
+};
+
 /// Counted along the way; integers, so that their sum does not depend on the order.
 struct PathCounts {
   uint64_t closest_rays = 0, occlusion_rays = 0;
@@ -41,9 +47,8 @@ struct PathCounts {
 /// heuristic (Veach and Guibas 1995). Immutable, keeps references; any number of threads may trace at once.
 class Integrator {
  public:
-  /// @param max_depth as PathOptions::max_depth
   Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
-             std::optional<int> max_depth);
+             const Transport& transport);
 
   /// Sets `vertex` to what a ray (unit direction) finds; none where it leaves the scene. In place: copying what was
   /// just written costs more than the copy.
@@ -63,6 +68,7 @@ class Integrator {
   LightSampler lights_;
   glm::vec3 background_;
   int max_depth_;
+  bool compensates_;
   bool light_can_be_hit_;  // there are emissive surfaces or a background
 };
 

@@ -48,13 +48,13 @@ void PassCounts::add(const PassCounts& other) {
   first_nonfinite = std::min(first_nonfinite, other.first_nonfinite);
 }
 
-PassRenderer::PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth,
+PassRenderer::PassRenderer(const Scene& scene, const Caster& caster, const View& view, const Transport& transport,
                            uint64_t seed, const ExtraLayers& extra, const Part& part)
     : view_(view),
       rays_(view),
       surfaces_(scene),
-      integrator_(scene, surfaces_, caster, view.background, max_depth),
-      extra_(scene, surfaces_, caster, view.background, max_depth, extra),
+      integrator_(scene, surfaces_, caster, view.background, transport),
+      extra_(scene, surfaces_, caster, view.background, transport, extra),
       seed_(seed),
       grid_(view.width, view.height),
       tiles_(grid_.tiles_of(part)),

@@ -56,7 +56,7 @@ struct Pass {
 /// arguments.
 class PassRenderer {
  public:
-  PassRenderer(const Scene& scene, const Caster& caster, const View& view, std::optional<int> max_depth, uint64_t seed,
+  PassRenderer(const Scene& scene, const Caster& caster, const View& view, const Transport& transport, uint64_t seed,
                const ExtraLayers& extra = {}, const Part& part = {});
   PassRenderer(const PassRenderer&) = delete;  // its parts refer to one another
 

@@ -105,7 +105,8 @@ class Render {
   Render(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options)
       : view_(view),
         options_(options),
-        renderer_(scene, caster, view, options.max_depth, options.seed, options.extra, options.part),
+        renderer_(scene, caster, view, {options.max_depth, options.energy_compensation}, options.seed, options.extra,
+                  options.part),
         film_(view.width, view.height, options.extra) {
     if (options.checkpoint.resume) resume();
   }

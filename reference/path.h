@@ -20,6 +20,8 @@ struct PathOptions {
   std::optional<double> seconds;  ///< stop after this time
   std::optional<int>
       max_depth;  ///< 0: emission only, 1: direct, 2: one indirect bounce ...; none: Russian roulette alone
+  bool energy_compensation =
+      false;  ///< of the GGX lobe, which glTF defines with single scattering: compensate_energy()
   uint64_t seed = 0;
   ExtraLayers extra;
   Part part;  ///< with a known number of samples only: parts cannot agree on when to stop. See merge.h

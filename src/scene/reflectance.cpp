@@ -192,6 +192,17 @@ glm::vec3 diffuse_albedo(const Reflectance& r, float n_v) {
   return r.diffuse * (1.0f - (r.layer_f0 + r.layer_f1 * tables().loss_at(n_v)));
 }
 
+void compensate_energy(Reflectance& r, float n_v) {
+  if (!r.has_specular()) return;
+  Reflectance lossless;
+  lossless.specular_f0 = glm::vec3(1.0f);
+  lossless.alpha = r.alpha;
+  const float single = specular_albedo(lossless, n_v).r;
+  const glm::vec3 gain = 1.0f + r.specular_f0 * ((1.0f - single) / single);
+  r.specular_f0 *= gain;
+  r.specular_f1 *= gain;
+}
+
 glm::vec3 hemispherical_albedo(const Reflectance& r) {
   if (!r.has_specular() && r.layer_f0 == 0.0f && r.layer_f1 == 0.0f) return r.diffuse;
   const auto [j, t] = AlbedoTables::row_of(r.alpha);

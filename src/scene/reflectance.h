@@ -40,6 +40,11 @@ float ggx_visibility(float n_l, float n_v, float alpha);
 glm::vec3 specular_albedo(const Reflectance& reflectance, float n_v);
 /// The same of the diffuse base, less what the layer over it reflects.
 glm::vec3 diffuse_albedo(const Reflectance& reflectance, float n_v);
+/// Adds to the specular lobe, as seen from a direction of cosine `n_v`, what microfacets throw at each other
+/// and single scattering loses: Turquin 2019, "Practical multiple scattering compensation for microfacet models",
+/// f = f_single (1 + f0 (1 - E) / E) with the lobe's directional albedo E at reflectance 1. Exact for a lobe that
+/// absorbs nothing; not reciprocal, since E is that of the viewer alone. @param n_v in [0,1]
+void compensate_energy(Reflectance& reflectance, float n_v);
 /// Both together, averaged over the cosine-weighted hemisphere: what a voxel keeps, which forgets where light goes.
 glm::vec3 hemispherical_albedo(const Reflectance& reflectance);
 

@@ -196,6 +196,7 @@ TEST_CASE("an image's header says where it comes from", "[cli]") {
                                             {"noise", nullptr},
                                             {"time", nullptr},
                                             {"max_depth", nullptr},
+                                            {"energy_compensation", false},
                                             {"seed", 7},
                                             {"bounces", 0},
                                             {"irradiance", false}}));

@@ -123,6 +123,8 @@ void add_path_options(CLI::App& command, PathOptions& options) {
                      options.extra.bounces = static_cast<int>(parse_integer("--bounces", text, 1, most_bounces));
                    });
   command.add_flag("--irradiance", options.extra.irradiance, "layer irradiance too: what arrives at the first hit");
+  command.add_flag("--energy-compensation", options.energy_compensation,
+                   "rough metals keep the light that facets throw at each other (default: as glTF, they lose it)");
   command.parse_complete_callback([&options] {
     if (options.spp == 0 && !options.noise && !options.seconds) options.spp = usual_spp;
   });

@@ -73,6 +73,7 @@ nlohmann::json describe(const PathOptions& options) {
           {"noise", given(options.noise)},
           {"time", given(options.seconds)},
           {"max_depth", given(options.max_depth)},
+          {"energy_compensation", options.energy_compensation},
           {"seed", options.seed},
           {"bounces", options.extra.bounces},
           {"irradiance", options.extra.irradiance}};
