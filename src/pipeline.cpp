@@ -26,10 +26,13 @@ glm::vec3 mean_color(const Image& image) {
 }
 
 /// Two radiances per voxel (direct, and after the bounces) are held beside the surfaces and one pyramid.
-std::map<std::string, size_t> count_bytes(const SurfaceGrid& surfaces, const Pyramid& pyramid, size_t radiances) {
+template <class Texel>
+std::map<std::string, size_t> count_bytes(const SurfaceGrid& surfaces, const BasicPyramid<Texel>& pyramid,
+                                          size_t radiances) {
   std::map<std::string, size_t> bytes;
   bytes["surfaces"] = surfaces.bytes();
   bytes["radiance"] = radiances * surfaces.size() * sizeof(glm::vec3);
+  bytes["visibility"] = surfaces.size() * sizeof(float);
   bytes["base"] = pyramid.base.bytes();
   for (const auto& level : pyramid.levels) bytes["levels"] += level.bytes();
   size_t total = 0;
@@ -38,34 +41,39 @@ std::map<std::string, size_t> count_bytes(const SurfaceGrid& surfaces, const Pyr
   return bytes;
 }
 
-}  // namespace
-
-ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
-                           const ConeTraceOutputs& outputs, const Progress& progress) {
+/// The pipeline with volumes of one storage.
+template <class Texel>
+ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
+                    const ConeTraceOutputs& outputs, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   ConeTraceResult result;
   StageSeconds& seconds = result.seconds;
   result.grid = fit_grid(scene.bounds(), settings.grid);
   std::optional<VolumeFolderWriter> folder;
-  if (outputs.volumes) folder.emplace(*outputs.volumes, result.grid);
+  if (outputs.volumes) folder.emplace(*outputs.volumes, result.grid, settings.storage);
 
   SurfaceGrid surfaces =
       timed(seconds.voxelize, [&] { return voxelize(scene, result.grid, settings.voxelize, progress); });
   result.voxels_occupied = surfaces.size();
-  std::vector<glm::vec3> radiance =
-      timed(seconds.shade, [&] { return shade(scene, &caster, surfaces, settings.shade, progress); });
-  Pyramid pyramid = timed(seconds.mipmap, [&] { return mipmap(surfaces, radiance, settings.mipmap, progress); });
+  Shading shading = timed(seconds.shade, [&] {
+    Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, progress);
+    for (glm::vec3& radiance : lit.radiance) radiance = stored<Texel>(radiance);
+    return lit;
+  });
+  BasicPyramid<Texel> pyramid =
+      timed(seconds.mipmap, [&] { return mipmap<Texel>(surfaces, shading.radiance, settings.mipmap, progress); });
   if (folder) {
     folder->write_surfaces(surfaces);
-    folder->write_radiance(surfaces, radiance, false);
+    folder->write_visibility(surfaces, shading.visibility);
+    folder->write_radiance(surfaces, shading.radiance, false);
     folder->write_levels(pyramid, false);
   }
 
   const bool bounces = settings.bounce.count != 0;
   if (bounces) {
-    BounceResult bounced = timed(seconds.bounce, [&] {
-      return bounce(surfaces, radiance, std::move(pyramid), settings.bounce, settings.render.cone, settings.mipmap,
-                    view.background, progress);
+    BasicBounceResult<Texel> bounced = timed(seconds.bounce, [&] {
+      return bounce(surfaces, shading.radiance, std::move(pyramid), settings.bounce, settings.render.cone,
+                    settings.mipmap, view.background, progress);
     });
     result.bounces = bounced.bounces;
     result.gain = bounced.gain;
@@ -77,7 +85,7 @@ ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View&
   }
   result.bytes = count_bytes(surfaces, pyramid, bounces ? 2 : 1);
   surfaces = {};  // the image needs none of them
-  radiance = {};
+  shading = {};
   result.image = timed(seconds.cone_trace, [&] {
     const Medium medium = make_medium(std::move(pyramid));
     return render_cones(scene, caster, medium, view, settings.render, progress);
@@ -86,6 +94,19 @@ ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View&
   result.mean = mean_color(result.image.image);
   seconds.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+}  // namespace
+
+ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
+                           const ConeTraceOutputs& outputs, const Progress& progress) {
+  validate(settings);
+  switch (settings.storage) {
+    case Storage::unorm8:
+      return run<Rgba8>(scene, caster, view, settings, outputs, progress);
+    default:
+      return run<glm::vec4>(scene, caster, view, settings, outputs, progress);
+  }
 }
 
 }  // namespace voxref

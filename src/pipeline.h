@@ -22,7 +22,8 @@ struct ConeTraceResult {
   int bounces = 0;
   double gain = 0.0;
   StageSeconds seconds;
-  std::map<std::string, size_t> bytes;  ///< per volume: surfaces, base, levels; `total` is the most held at once
+  std::map<std::string, size_t>
+      bytes;  ///< per volume: surfaces, radiance, visibility, base, levels; `total` is the most held at once
 };
 
 struct ConeTraceOutputs {

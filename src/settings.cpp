@@ -1,180 +1,18 @@
-// Every parameter once, in one table, which serves defaults, files, --set and the help alike.
 #include "settings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
 
 #include "error.h"
+#include "settings_table.h"
 
 namespace voxref {
 
 namespace {
 
 using nlohmann::json;
-
-struct Parameter {
-  std::string key, range, meaning;
-  std::function<json(const Settings&)> get;
-  std::function<void(Settings&, const json&)> set;  // throws Error when the value does not fit
-};
-
-[[noreturn]] void refuse(const std::string& key, const json& value, const std::string& expected) {
-  throw Error(key, value.dump() + " is not " + expected);
-}
-
-/// The double with the float's shortest decimals: 0.03f is written 0.03, not 0.029999999329447746.
-double with_shortest_decimals(float value) { return std::stod(fmt::format("{}", value)); }
-
-// In the builders below, `field` maps Settings& to the member's reference, const or not.
-
-template <class Field>
-Parameter integer(std::string key, int low, int high, std::string meaning, Field field) {
-  const std::string range = fmt::format("{} to {}", low, high);
-  return {key, range, std::move(meaning), [field](const Settings& s) { return json(field(s)); },
-          [=](Settings& s, const json& value) {
-            if (!value.is_number_integer()) refuse(key, value, "an integer, " + range);
-            const double number =
-                value.get<double>();  // also holds integers beyond int64, which the JSON parser admits
-            if (number < low || number > high) refuse(key, value, "in the range " + range);
-            field(s) = value.get<int>();
-          }};
-}
-
-template <class Field>
-Parameter number(std::string key, float low, float high, std::string meaning, Field field) {
-  const std::string range = fmt::format("{} to {}", low, high);
-  return {key, range, std::move(meaning), [field](const Settings& s) { return json(with_shortest_decimals(field(s))); },
-          [=](Settings& s, const json& value) {
-            if (!value.is_number()) refuse(key, value, "a number, " + range);
-            const float number = value.get<float>();
-            if (!(number >= low && number <= high)) refuse(key, value, "in the range " + range);
-            field(s) = number;
-          }};
-}
-
-template <class Field>
-Parameter flag(std::string key, std::string meaning, Field field) {
-  return {key, "true, false", std::move(meaning), [field](const Settings& s) { return json(field(s)); },
-          [=](Settings& s, const json& value) {
-            if (!value.is_boolean()) refuse(key, value, "true or false");
-            field(s) = value.get<bool>();
-          }};
-}
-
-/// An enumeration whose values are 0, 1, 2 ... in the order of `names`.
-template <class Field>
-Parameter choice(std::string key, std::vector<std::string> names, std::string meaning, Field field) {
-  const std::string range = fmt::format("{}", fmt::join(names, ", "));
-  return {key, range, std::move(meaning), [=](const Settings& s) { return json(names[static_cast<size_t>(field(s))]); },
-          [=](Settings& s, const json& value) {
-            const auto found = std::find(names.begin(), names.end(), value);
-            if (found == names.end()) refuse(key, value, "one of " + range);
-            using Enum = std::remove_reference_t<decltype(field(s))>;
-            field(s) = static_cast<Enum>(found - names.begin());
-          }};
-}
-
-Parameter bounce_count() {
-  const Parameter counted = integer(
-      "bounce.count", 0, 1000, "", [](auto& s) -> auto& { return *s.bounce.count; });
-  return {counted.key, "\"auto\", " + counted.range,
-          "bounces at the voxels; auto: until one adds less than 1 %, which leaves out at most gain / (1 - gain) % of "
-          "the light",
-          [](const Settings& s) { return s.bounce.count ? json(*s.bounce.count) : json("auto"); },
-          [counted](Settings& s, const json& value) {
-            std::optional<int> count;
-            if (value != "auto") {
-              if (!value.is_number_integer()) refuse(counted.key, value, "\"auto\" or an integer, " + counted.range);
-              Settings parsed = s;
-              parsed.bounce.count = 0;
-              counted.set(parsed, value);
-              count = parsed.bounce.count;
-            }
-            s.bounce.count = count;
-          }};
-}
-
-/// A parameter of the specification of which this pipeline has one value.
-Parameter fixed(const std::string& key, const json& only, std::string meaning) {
-  const std::string range = "only " + only.dump();
-  return {key, range, std::move(meaning), [only](const Settings&) { return only; },
-          [=](Settings&, const json& value) {
-            if (value != only) throw Error(key, value.dump() + " is not available; " + range + " is");
-          }};
-}
-
-std::vector<Parameter> make_parameters() {
-  // Cone sets have 1 to 16384 cones (partition_hemisphere); steps of 0.01 to 4 are march()'s.
-  constexpr int most_cones = 16384;
-  return {
-      integer(
-          "grid.resolution", 16, 2048, "voxels along the longest side",
-          [](auto& s) -> auto& { return s.grid.resolution; }),
-      fixed("grid.cubic", false, "a cube from the scene's minimum corner instead of a fitted box"),
-      fixed("grid.bounds", nullptr, "box that overrides the scene's own"),
-      fixed("voxelize.method", "exact", "how triangles become voxels"),
-      fixed("voxelize.average", "area", "what weighs the pieces of surface in a voxel"),
-      choice(
-          "voxelize.opacity", {"occupied", "coverage"}, "opacity of a voxel with surface: 1, or projected coverage",
-          [](auto& s) -> auto& { return s.voxelize.opacity; }),
-      fixed("voxelize.static_wins", false, "dynamic surfaces never overwrite static voxels"),
-      fixed("storage", "float32", "number format of the volumes"),
-      fixed("light.falloff", "inverse_square", "of point and spot lights"),
-      fixed("light.attenuation", nullptr, "coefficients of the attenuated falloff"),
-      fixed("shade.position", "centroid", "where in the voxel light arrives"),
-      fixed("shade.normal_weighted", false, "attenuation weighted by the normal's axes instead of Lambert's cosine"),
-      fixed("shade.normalization", "lambert", "albedo over pi"),
-      choice(
-          "shade.shadow", {"none", "rays", "volume"}, "shadows at the voxels",
-          [](auto& s) -> auto& { return s.shade.shadow; }),
-      fixed("shade.shadow_hit", nullptr, "opacity of a hit of the marched shadow"),
-      choice(
-          "mipmap.filter", {"anisotropic", "isotropic"}, "directional volumes, or one plain mean",
-          [](auto& s) -> auto& { return s.mipmap.filter; }),
-      bounce_count(),
-      integer(
-          "bounce.cones", 1, most_cones, "cones over the hemisphere of each voxel",
-          [](auto& s) -> auto& { return s.bounce.cones; }),
-      fixed("bounce.max_distance", nullptr, "cut-off of a bounce's cones"),
-      integer(
-          "cone.diffuse", 1, most_cones, "cones over the hemisphere of each pixel",
-          [](auto& s) -> auto& { return s.render.cone.diffuse; }),
-      number(
-          "cone.step", 0.01f, 4.0f, "step length in cone diameters",
-          [](auto& s) -> auto& { return s.render.cone.step; }),
-      number(
-          "cone.start", 0.0f, 16.0f, "voxels from the surface to a cone's apex",
-          [](auto& s) -> auto& { return s.render.cone.start; }),
-      fixed("cone.opacity", "extinction", "what is interpolated between texels"),
-      fixed("cone.max_distance", nullptr, "cut-off of a pixel's cones"),
-      flag(
-          "ao.enabled", "ambient occlusion in the channel ao.Y", [](auto& s) -> auto& { return s.render.ao.enabled; }),
-      number(
-          "ao.falloff", 0.0f, 1e6f, "how fast occlusion fades with distance",
-          [](auto& s) -> auto& { return s.render.ao.falloff; }),
-      fixed("ao.alpha", 0, "added to the openness"),
-      choice(
-          "pixel.shadow", {"none", "rays", "cone"}, "shadows of the image's direct light",
-          [](auto& s) -> auto& { return s.render.pixel.shadow; }),
-      number(
-          "pixel.shadow_cone.aperture", 1e-4f, 10.0f, "tangent of the shadow cone's half-angle",
-          [](auto& s) -> auto& { return s.render.pixel.shadow_cone_aperture; }),
-      fixed("pixel.shadow_cone.tolerance", nullptr, "gain of the shadow cone's opacity"),
-      fixed("composite.bounce_strength", 1, "factor on the indirect light"),
-      fixed("composite.indirect_power", 1, "exponent on the indirect light"),
-  };
-}
-
-const std::vector<Parameter>& parameters() {
-  static const std::vector<Parameter> table = make_parameters();
-  return table;
-}
 
 /// Levenshtein's: insertions, deletions and replacements that turn one into the other.
 size_t edit_distance(std::string_view a, std::string_view b) {
@@ -223,11 +61,52 @@ json::json_pointer pointer_to(std::string key) {
   return json::json_pointer("/" + key);
 }
 
+/// What the published shaders compute: the table of spec.md.
+Settings villegas2016() {
+  Settings s;
+  s.profile = "villegas2016";
+  s.grid.cubic = true;
+  s.voxelize = {VoxelizeMethod::raster, VoxelAverage::running_floor8, VoxelOpacity::occupied, /*static_wins=*/true};
+  s.storage = Storage::unorm8;
+  s.light.falloff = LightFalloff::attenuated;
+  s.shade.position = ShadePosition::corner;
+  s.shade.two_sided = false;
+  s.shade.normal_weighted = true;
+  s.shade.normalization = ShadeNormalization::none;
+  s.shade.shadow = VoxelShadow::volume;
+  s.shade.shadow_hit = 0.5f;
+  s.bounce.count = 1;
+  s.bounce.cones = published_cones;
+  s.bounce.max_distance = 0.95f;
+  s.render.cone.diffuse = published_cones;
+  s.render.cone.start = 2.0f;
+  s.render.cone.opacity = ConeOpacity::raw;
+  s.render.cone.max_distance = 0.95f;
+  s.render.pixel.shadow = PixelShadow::cone;
+  s.render.composite = {2.0f, 2.2f};
+  return s;
+}
+
 }  // namespace
 
 Settings profile(std::string_view name) {
-  if (name != "radiometric") throw Error("profile '" + std::string(name) + "' is not available; there is: radiometric");
-  return {};
+  if (name == "radiometric") return {};
+  if (name == "villegas2016") return villegas2016();
+  throw Error("profile '" + std::string(name) + "' is not available; there are: radiometric, villegas2016");
+}
+
+void validate(const Settings& settings) {
+  const auto require = [](bool condition, const char* key, const char* why) {
+    if (!condition) throw Error(key, why);
+  };
+  const bool raster = settings.voxelize.method == VoxelizeMethod::raster;
+  require(!raster || settings.grid.cubic, "voxelize.method", "raster draws into a cube: it needs grid.cubic=true");
+  require(raster == (settings.voxelize.average == VoxelAverage::running_floor8), "voxelize.average",
+          "area goes with voxelize.method=exact, running_floor8 with raster");
+  require(!raster || settings.voxelize.opacity == VoxelOpacity::occupied, "voxelize.opacity",
+          "coverage is known to voxelize.method=exact only");
+  require(settings.render.pixel.shadow != PixelShadow::visibility || settings.render.cone.opacity == ConeOpacity::raw,
+          "pixel.shadow", "visibility goes with cone.opacity=raw");
 }
 
 json to_json(const Settings& settings) {
@@ -260,10 +139,10 @@ void apply_assignment(Settings& settings, std::string_view assignment) {
 }
 
 std::vector<ParameterHelp> parameter_help() {
-  const Settings defaults;
+  const Settings radiometric = profile("radiometric"), published = profile("villegas2016");
   std::vector<ParameterHelp> lines;
-  for (const Parameter& parameter : parameters())
-    lines.push_back({parameter.key, parameter.get(defaults).dump(), parameter.range, parameter.meaning});
+  for (const Parameter& p : parameters())
+    lines.push_back({p.key, p.get(radiometric).dump(), p.get(published).dump(), p.range, p.meaning});
   return lines;
 }
 

@@ -6,9 +6,11 @@
 
 #include "cone/bounce.h"
 #include "cone/render.h"
+#include "scene/light.h"
 #include "voxel/grid.h"
 #include "voxel/mipmap.h"
 #include "voxel/shade.h"
+#include "voxel/texel.h"
 #include "voxel/voxelize.h"
 
 namespace voxref {
@@ -18,13 +20,15 @@ struct Settings {
   std::string profile = "radiometric";
   GridOptions grid;
   VoxelizeOptions voxelize;
+  Storage storage = Storage::float32;
+  LightOptions light;
   ShadeOptions shade;
   MipmapOptions mipmap;
   BounceOptions bounce;
-  RenderOptions render;  ///< JSON keys cone.*, ao.*, pixel.*
+  RenderOptions render;  ///< JSON keys cone.*, ao.*, pixel.*, composite.*
 };
 
-/// Defaults of a profile. @throws Error for an unknown name, listing those there are
+/// Defaults of a profile: radiometric or villegas2016. @throws Error for an unknown name, listing those there are
 Settings profile(std::string_view name);
 
 /// JSON objects nest as the dots of the parameter names say; a file may name the profile it starts from.
@@ -34,9 +38,12 @@ void apply_json(Settings& settings, const nlohmann::json& json);
 /// Applies one `key=value`, for instance "cone.step=0.25". @throws Error as apply_json
 void apply_assignment(Settings& settings, std::string_view assignment);
 
-/// One line per parameter for the help: key, default, range, meaning.
+/// Refuses values that contradict each other; each alone is in its range. @throws Error naming a parameter
+void validate(const Settings& settings);
+
+/// One line per parameter for the help: key, value in each profile, range, meaning.
 struct ParameterHelp {
-  std::string key, value, range, meaning;
+  std::string key, radiometric, villegas2016, range, meaning;
 };
 std::vector<ParameterHelp> parameter_help();
 

@@ -28,10 +28,39 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 Settings with_every_parameter_changed() {
   Settings s;
-  for (const char* assignment :
-       {"grid.resolution=64", "voxelize.opacity=coverage", "shade.shadow=volume", "mipmap.filter=isotropic",
-        "bounce.count=3", "bounce.cones=9", "cone.diffuse=16", "cone.step=0.1", "cone.start=2.5", "ao.enabled=true",
-        "ao.falloff=12.5", "pixel.shadow=cone", "pixel.shadow_cone.aperture=0.2"})
+  for (const char* assignment : {"grid.resolution=64",
+                                 "voxelize.opacity=coverage",
+                                 "shade.shadow=volume",
+                                 "mipmap.filter=isotropic",
+                                 "bounce.count=3",
+                                 "bounce.cones=9",
+                                 "cone.diffuse=16",
+                                 "cone.step=0.1",
+                                 "cone.start=2.5",
+                                 "ao.enabled=true",
+                                 "ao.falloff=12.5",
+                                 "pixel.shadow=cone",
+                                 "pixel.shadow_cone.aperture=0.2",
+                                 "grid.cubic=true",
+                                 "grid.bounds=[[0,1,2],[3.5,4,5]]",
+                                 "voxelize.method=raster",
+                                 "voxelize.average=running_floor8",
+                                 "voxelize.static_wins=true",
+                                 "storage=unorm8",
+                                 "light.falloff=attenuated",
+                                 "light.attenuation=[0.1,0.02,3]",
+                                 "shade.position=corner",
+                                 "shade.two_sided=false",
+                                 "shade.normal_weighted=true",
+                                 "shade.normalization=none",
+                                 "shade.shadow_hit=0.25",
+                                 "bounce.max_distance=0.5",
+                                 "cone.opacity=raw",
+                                 "cone.max_distance=0.75",
+                                 "ao.alpha=0.125",
+                                 "pixel.shadow_cone.tolerance=1",
+                                 "composite.bounce_strength=3",
+                                 "composite.indirect_power=2.5"})
     apply_assignment(s, assignment);
   return s;
 }
@@ -53,6 +82,34 @@ TEST_CASE("each parameter of the command line reaches its field", "[settings]") 
   CHECK(s.render.ao.falloff == 12.5f);
   CHECK(s.render.pixel.shadow == voxref::PixelShadow::cone);
   CHECK(s.render.pixel.shadow_cone_aperture == 0.2f);
+  CHECK(s.grid.cubic);
+  CHECK(s.grid.bounds->min == glm::vec3(0, 1, 2));
+  CHECK(s.grid.bounds->max == glm::vec3(3.5f, 4, 5));
+  CHECK(s.voxelize.method == voxref::VoxelizeMethod::raster);
+  CHECK(s.voxelize.average == voxref::VoxelAverage::running_floor8);
+  CHECK(s.voxelize.static_wins);
+  CHECK(s.storage == voxref::Storage::unorm8);
+  CHECK(s.light.falloff == voxref::LightFalloff::attenuated);
+  CHECK(s.light.attenuation == glm::vec3(0.1f, 0.02f, 3.0f));
+  CHECK(s.shade.position == voxref::ShadePosition::corner);
+  CHECK_FALSE(s.shade.two_sided);
+  CHECK(s.shade.normal_weighted);
+  CHECK(s.shade.normalization == voxref::ShadeNormalization::none);
+  CHECK(s.shade.shadow_hit == 0.25f);
+  CHECK(s.bounce.max_distance == 0.5f);
+  CHECK(s.render.cone.opacity == voxref::ConeOpacity::raw);
+  CHECK(s.render.cone.max_distance == 0.75f);
+  CHECK(s.render.ao.alpha == 0.125f);
+  CHECK(s.render.pixel.shadow_cone_tolerance == 1.0f);
+  CHECK(s.render.composite.bounce_strength == 3.0f);
+  CHECK(s.render.composite.indirect_power == 2.5f);
+  // Whatever is left at its default here was forgotten above.
+  const json changed = to_json(s).flatten(), defaults = to_json(Settings{}).flatten();
+  for (const auto& [key, value] : changed.items())
+    if (key != "/profile") {
+      CAPTURE(key);
+      CHECK((!defaults.contains(key) || defaults[key] != value));
+    }
 }
 
 TEST_CASE("settings written as JSON and read back are the same settings", "[settings]") {
@@ -70,12 +127,13 @@ TEST_CASE("every parameter has a default that it accepts itself, a range and a m
   std::set<std::string> keys;
   for (const voxref::ParameterHelp& line : voxref::parameter_help()) {
     CAPTURE(line.key);
-    CHECK(refusal(line.key + "=" + line.value) == "");
+    CHECK(refusal(line.key + "=" + line.radiometric) == "");
+    CHECK(refusal(line.key + "=" + line.villegas2016) == "");
     CHECK(!line.range.empty());
     CHECK(!line.meaning.empty());
     CHECK(keys.insert(line.key).second);
   }
-  CHECK(keys.size() == 32);  // the specification's table
+  CHECK(keys.size() == 33);  // the specification's table and shade.two_sided
 }
 
 TEST_CASE("settings nest as the dots of their keys say and take dotted keys too", "[settings]") {
@@ -110,15 +168,37 @@ TEST_CASE("a value out of range is answered with the range", "[settings]") {
   CHECK(contains(refusal("cone.diffuse=0"), "1 to 16384"));
   CHECK(contains(refusal("bounce.count=-1"), "0 to 1000"));
   CHECK(contains(refusal("shade.shadow=soft"), "none, rays, volume"));
+  CHECK(contains(refusal("grid.bounds=[[0,0,0],[1,0,1]]"), "minimum lies below"));
   CHECK(refusal("grid.resolution=16") == "");
   CHECK(refusal("grid.resolution=2048") == "");
 }
 
 TEST_CASE("a value of the wrong type is refused, not converted", "[settings]") {
-  for (const char* wrong :
-       {"grid.resolution=128.5", "grid.resolution=\"128\"", "grid.resolution=true", "cone.step=fast", "cone.step=nan",
-        "cone.step=inf", "cone.step=1e999", "cone.step=", "cone.step=[1]", "cone.step=null", "ao.enabled=1",
-        "ao.enabled=yes", "bounce.count=1.5", "bounce.count=many", "shade.shadow=1", "pixel=none", "cone.step"}) {
+  for (const char* wrong : {"grid.resolution=128.5",
+                            "grid.resolution=\"128\"",
+                            "grid.resolution=true",
+                            "cone.step=fast",
+                            "cone.step=nan",
+                            "cone.step=inf",
+                            "cone.step=1e999",
+                            "cone.step=",
+                            "cone.step=[1]",
+                            "cone.step=null",
+                            "ao.enabled=1",
+                            "ao.enabled=yes",
+                            "bounce.count=1.5",
+                            "bounce.count=many",
+                            "shade.shadow=1",
+                            "grid.bounds=1",
+                            "grid.bounds=[[0,0,0]]",
+                            "grid.bounds=[[0,0,0],[1,1]]",
+                            "light.attenuation=[1,2]",
+                            "light.attenuation=[1,2,-3]",
+                            "cone.diffuse=villegas4",
+                            "bounce.cones=villegas6",
+                            "cone.max_distance=far",
+                            "pixel=none",
+                            "cone.step"}) {
     CAPTURE(wrong);
     CHECK(refusal(wrong) != "");
   }
@@ -129,13 +209,48 @@ TEST_CASE("a value of the wrong type is refused, not converted", "[settings]") {
   CHECK_THROWS_AS(apply_json(settings, json::parse(R"({"cone": 1})")), voxref::Error);
 }
 
-TEST_CASE("a value that this pipeline does not have is refused with what is available", "[settings]") {
-  CHECK(contains(refusal("voxelize.method=raster"), "only \"exact\""));
-  CHECK(contains(refusal("storage=unorm8"), "only \"float32\""));
-  CHECK(contains(refusal("grid.cubic=true"), "only false"));
-  CHECK(contains(refusal("composite.indirect_power=2.2"), "only 1"));
-  CHECK(refusal("composite.indirect_power=1.0") == "");
-  CHECK_THROWS_AS(voxref::profile("villegas2016"), voxref::Error);
+TEST_CASE("the profile of the published shaders has the values of the specification's table", "[settings]") {
+  const json expected = json::parse(R"({
+    "profile": "villegas2016", "storage": "unorm8",
+    "grid": {"resolution": 256, "cubic": true, "bounds": null},
+    "voxelize": {"method": "raster", "average": "running_floor8", "opacity": "occupied", "static_wins": true},
+    "light": {"falloff": "attenuated", "attenuation": [0.0, 0.0, 0.0]},
+    "shade": {"position": "corner", "normal_weighted": true, "normalization": "none", "shadow": "volume",
+              "shadow_hit": 0.5, "two_sided": false},
+    "mipmap": {"filter": "anisotropic"},
+    "bounce": {"count": 1, "cones": "villegas4", "max_distance": 0.95},
+    "cone": {"diffuse": "villegas6", "step": 0.5, "start": 2.0, "opacity": "raw", "max_distance": 0.95},
+    "ao": {"enabled": false, "falloff": 800.0, "alpha": 0.0},
+    "pixel": {"shadow": "cone", "shadow_cone": {"aperture": 0.03, "tolerance": 0.1}},
+    "composite": {"bounce_strength": 2.0, "indirect_power": 2.2}})");
+  CHECK(to_json(voxref::profile("villegas2016")) == expected);
+  CHECK_NOTHROW(validate(voxref::profile("villegas2016")));
+  CHECK_NOTHROW(validate(voxref::profile("radiometric")));
+  CHECK_THROWS_AS(voxref::profile("villegas"), voxref::Error);
+  Settings from_file;
+  apply_json(from_file, json::parse(R"({"profile": "villegas2016", "cone": {"step": 0.25}})"));
+  CHECK(from_file.render.cone.step == 0.25f);
+  CHECK(from_file.storage == voxref::Storage::unorm8);
+}
+
+TEST_CASE("values that contradict each other are refused by name", "[settings]") {
+  const auto contradiction = [](const char* name, const char* assignment) -> std::string {
+    Settings settings = voxref::profile(name);
+    apply_assignment(settings, assignment);
+    try {
+      validate(settings);
+    } catch (const voxref::Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(contains(contradiction("villegas2016", "grid.cubic=false"), "voxelize.method"));
+  CHECK(contains(contradiction("radiometric", "voxelize.method=raster"), "grid.cubic=true"));
+  CHECK(contains(contradiction("radiometric", "voxelize.average=running_floor8"), "voxelize.average"));
+  CHECK(contains(contradiction("villegas2016", "voxelize.opacity=coverage"), "voxelize.opacity"));
+  CHECK(contains(contradiction("radiometric", "pixel.shadow=visibility"), "cone.opacity=raw"));
+  CHECK(contradiction("villegas2016", "storage=float32") == "");
+  CHECK(contradiction("radiometric", "storage=unorm8") == "");
 }
 
 TEST_CASE("the count of bounces is a number or left to the pipeline", "[settings]") {

@@ -98,11 +98,13 @@ BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> dire
                 background, progress);
 }
 
-BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, Pyramid&& filtered,
-                    const BounceOptions& options, const ConeOptions& cone, const MipmapOptions& mipmap_options,
-                    const glm::vec3& background, const Progress& progress) {
+template <class Texel>
+BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct,
+                                BasicPyramid<Texel>&& filtered, const BounceOptions& options, const ConeOptions& cone,
+                                const MipmapOptions& mipmap_options, const glm::vec3& background,
+                                const Progress& progress) {
   const std::vector<Cone> cones = partition_hemisphere(options.cones);
-  BounceResult result;
+  BasicBounceResult<Texel> result;
   result.radiance.assign(direct.begin(), direct.end());
   result.pyramid = std::move(filtered);
 
@@ -115,7 +117,7 @@ BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> dire
     Medium medium = make_medium(std::move(result.pyramid));
     const Sums sums = gather_bounce(surfaces, direct, medium, cones, cone, background, result.radiance, so_far);
     medium = {};  // before the next pyramid is made: only one is held at a time
-    result.pyramid = mipmap(surfaces, result.radiance, mipmap_options, silent);
+    result.pyramid = mipmap<Texel>(surfaces, result.radiance, mipmap_options, silent);
     ++result.bounces;
 
     if (previous > 0.0) result.gain = sums.change / previous;
@@ -132,5 +134,11 @@ BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> dire
   progress("bounce", 1.0);
   return result;
 }
+
+template BounceResult bounce(const SurfaceGrid&, std::span<const glm::vec3>, Pyramid&&, const BounceOptions&,
+                             const ConeOptions&, const MipmapOptions&, const glm::vec3&, const Progress&);
+template BasicBounceResult<Rgba8> bounce(const SurfaceGrid&, std::span<const glm::vec3>, Pyramid8&&,
+                                         const BounceOptions&, const ConeOptions&, const MipmapOptions&,
+                                         const glm::vec3&, const Progress&);
 
 }  // namespace voxref

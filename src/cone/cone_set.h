@@ -11,6 +11,10 @@ struct Cone {
   float tan_half_angle = 0.0f;            ///< of the circular cone with the cell's solid angle, at most tan 60 degrees
 };
 
+/// In place of a count of cones: the directions and weights that the published shaders use, four at voxels and six at
+/// pixels.
+inline constexpr int published_cones = 0;
+
 /// Cones that partition the hemisphere into cells of equal solid angle: a polar cap and rings around it, ring counts
 /// chosen so that cells are about as wide as high (after Beckers and Beckers 2012); two and three cones are sectors. A
 /// cone points along its cell's cosine-weighted mean direction. @param count 1 to 16384 @throws Error out of range

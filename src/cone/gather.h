@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "cone/cone_set.h"
@@ -7,16 +8,24 @@
 
 namespace voxref {
 
+enum class ConeOpacity : uint8_t {
+  extinction,  ///< what is interpolated between texels; n short steps attenuate as one long one
+  raw          ///< opacity as stored, without correction for the step, as the published shaders do
+};
+
 struct ConeOptions {
-  int diffuse = 6;    ///< cones over the hemisphere, 1 to 16384
+  int diffuse = 6;    ///< cones over the hemisphere, 1 to 16384, or published_cones
   float step = 0.5f;  ///< see MarchOptions::step
   float start =
       1.5f;  ///< voxels along the normal (times the normal's 1-norm) from the surface to a cone's apex, 0 to 8
+  ConeOpacity opacity = ConeOpacity::extinction;
+  std::optional<float> max_distance{};  ///< of raw cones, in the grid's longest sides; none: to the box's end
 };
 
 struct AoOptions {
   bool enabled = false;
   float falloff = 800.0f;  ///< opacity at distance r counts 1 / (1 + falloff r / grid's longest side)
+  float alpha = 0.0f;      ///< added to the openness of raw cones
 };
 
 /// Where cones start.

@@ -37,7 +37,35 @@ void convert(BrickVolume<DirectionalTexel>& volume, float cell) {
   });
 }
 
+/// The same volume with texels that decode `texel` finds for each.
+template <class To, class From, class Decode>
+BrickVolume<To> converted(const BrickVolume<From>& from, Decode&& decode_texel) {
+  BrickVolume<To> to(from.size());
+  to.allocate(from.bricks());
+  const std::span<const From> source = from.texels();
+  const std::span<To> target = to.texels();
+  parallel_for(source.size(), grain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) target[i] = decode_texel(source[i]);
+  });
+  return to;
+}
+
 }  // namespace
+
+Medium make_medium(Pyramid8&& pyramid) {
+  const auto decoded = [](const Rgba8& texel) { return to_vec4(decode(texel)); };
+  Pyramid floats{pyramid.grid, converted<glm::vec4>(pyramid.base, decoded), {}};
+  pyramid.base = {};
+  for (BrickVolume<Directional<Rgba8>>& level : pyramid.levels) {
+    floats.levels.push_back(converted<DirectionalTexel>(level, [&](const Directional<Rgba8>& texel) {
+      DirectionalTexel faces;
+      for (size_t face = 0; face < faces.size(); ++face) faces[face] = decoded(texel[face]);
+      return faces;
+    }));
+    level = {};
+  }
+  return make_medium(std::move(floats));
+}
 
 Medium make_medium(Pyramid&& pyramid) {
   Medium medium{std::move(pyramid)};

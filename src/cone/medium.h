@@ -22,6 +22,8 @@ struct Medium {
 
 /// Converts in place; the pyramid's memory is taken over.
 Medium make_medium(Pyramid&& pyramid);
+/// The same of what the bytes hold.
+Medium make_medium(Pyramid8&& pyramid);
 
 /// The finest level alone, without radiance, for marching shadows before anything is lit.
 Medium make_opacity_medium(const SurfaceGrid& surfaces);

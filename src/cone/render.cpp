@@ -103,6 +103,7 @@ class Renderer {
     const bool directional = light.type == LightType::directional;
     switch (options_.pixel.shadow) {
       case PixelShadow::none:
+      case PixelShadow::visibility:  // read with raw cones only, see validate(Settings)
         return 1.0f;
       case PixelShadow::rays: {
         const Ray away = caster_.leave(point.position, point.geometric_normal, lit.to_light);

@@ -12,19 +12,28 @@ namespace voxref {
 
 enum class PixelShadow : uint8_t {
   none,
-  rays,  ///< to the triangles
-  cone   ///< a cone to the light through the voxels
+  rays,       ///< to the triangles
+  cone,       ///< a cone to the light through the voxels
+  visibility  ///< what the voxels see of the lights, interpolated
 };
 
 struct PixelOptions {
   PixelShadow shadow = PixelShadow::rays;
   float shadow_cone_aperture = 0.03f;  ///< tangent of the half-angle
+  float shadow_cone_tolerance = 0.1f;  ///< t: raw shadow cones multiply opacity by 2^(7 t)
+};
+
+/// How the layers become R,G,B: (direct + (bounce_strength (diffuse + specular))^indirect_power) ao + emission.
+struct CompositeOptions {
+  float bounce_strength = 1.0f;
+  float indirect_power = 1.0f;
 };
 
 struct RenderOptions {
   ConeOptions cone;
   AoOptions ao;
   PixelOptions pixel;
+  CompositeOptions composite;
 };
 
 /// The image stage: primary rays, direct light of the punctual lights, diffuse and specular gathers, emission; linear

@@ -17,6 +17,17 @@ struct Light {
   float cos_inner = 1.0f, cos_outer = 0.70710678f;  ///< spot: full inside the inner cone, none outside the outer
 };
 
+enum class LightFalloff : uint8_t {
+  inverse_square,  ///< as light does
+  attenuated       ///< 1 / (1 + c + l d + q d^2), as the published shaders do
+};
+
+/// How point and spot lights fade with distance d (world units).
+struct LightOptions {
+  LightFalloff falloff = LightFalloff::inverse_square;
+  glm::vec3 attenuation{0.0f};  ///< c, l (1/length), q (1/length^2) of `attenuated`; not negative
+};
+
 /// What a light does at a point, shadows left out.
 struct Illumination {
   glm::vec3 to_light{0.0f};    ///< unit
@@ -26,6 +37,8 @@ struct Illumination {
 
 /// Point: I/d^2. Spot: the same times glTF's angular attenuation, clamp((cos - cos_outer)/(cos_inner - cos_outer), 0,
 /// 1) squared, the denominator at least 0.001. Directional: E. A point on the light itself gets zero.
-Illumination illuminate(const Light& light, const glm::vec3& point);
+/// With the attenuated falloff the intensity counts as the irradiance at distance 0, and a spot's ramp is smoothstep's:
+/// t^2 (3 - 2 t) (spec section 3, villegas2016).
+Illumination illuminate(const Light& light, const glm::vec3& point, const LightOptions& options = {});
 
 }  // namespace voxref

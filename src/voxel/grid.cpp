@@ -28,34 +28,67 @@ double reach(const Bounds& bounds) {
   return largest;
 }
 
+/// Voxels that an extent needs, without margins.
+int voxels_across(double extent, double voxel) { return int(std::ceil(extent / voxel - rounding)); }
+
 int voxels_along(double extent, double voxel) {
   if (extent <= rounding * voxel) return flat_side;
-  return std::max(min_side, int(std::ceil(extent / voxel - rounding)) + margins);
+  return std::max(min_side, voxels_across(extent, voxel) + margins);
 }
 
-}  // namespace
-
-Grid fit_grid(const Bounds& bounds, const GridOptions& options) {
+void require_resolution(const GridOptions& options) {
+  const std::string given = std::to_string(options.resolution);
   if (options.resolution < min_resolution || options.resolution > max_resolution)
-    throw Error("grid.resolution", std::to_string(options.resolution) + " is outside " +
-                                       std::to_string(min_resolution) + " to " + std::to_string(max_resolution));
+    throw Error("grid.resolution",
+                given + " is outside " + std::to_string(min_resolution) + " to " + std::to_string(max_resolution));
+  if (options.cubic && (options.resolution & (options.resolution - 1)) != 0)
+    throw Error("grid.resolution", given + " is not a power of two, which grid.cubic asks for");
+}
 
-  const glm::dvec3 low = bounds.empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.min);
-  const glm::dvec3 high = bounds.empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.max);
-  const glm::dvec3 center = 0.5 * (low + high), extent = high - low;
-  const double longest = std::max({extent.x, extent.y, extent.z});
-
-  Grid grid;
-  if (!(longest > 0.0)) {
-    grid.size = glm::ivec3(min_side);
-    grid.min = glm::vec3(center - 0.5 * min_side);
-    return grid;
-  }
-  grid.voxel = float(longest / (options.resolution - margins));
+void require_distinct_voxels(const Grid& grid, const Bounds& bounds) {
   const double spacing = reach(bounds) * std::numeric_limits<float>::epsilon();  // of float32 numbers out there
   if (!std::isfinite(grid.voxel) || grid.voxel < std::numeric_limits<float>::min() || grid.voxel < 4.0 * spacing)
     throw Error("grid", "voxels of " + std::to_string(grid.voxel) + " world units cannot be told apart in float32 at " +
                             "coordinates up to " + std::to_string(reach(bounds)) + "; lower grid.resolution");
+}
+
+/// A grid that begins at the box's minimum corner and has no margin. float32 as the published program computes it.
+Grid anchored_grid(const Bounds& box, const GridOptions& options) {
+  const glm::vec3 extent = box.extent();
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  Grid grid;
+  grid.size = glm::ivec3(options.resolution);
+  grid.min = box.min;
+  grid.voxel = longest / float(options.resolution);
+  require_distinct_voxels(grid, box);
+  if (!options.cubic)
+    for (int axis = 0; axis < 3; ++axis) grid.size[axis] = std::max(1, voxels_across(extent[axis], grid.voxel));
+  return grid;
+}
+
+/// Unit voxels around a point.
+Grid unit_voxels(const glm::dvec3& center, int side) {
+  Grid grid;
+  grid.size = glm::ivec3(side);
+  grid.min = glm::vec3(center - 0.5 * side);
+  return grid;
+}
+
+}  // namespace
+
+Grid fit_grid(const Bounds& scene_bounds, const GridOptions& options) {
+  require_resolution(options);
+  const Bounds& bounds = options.bounds ? *options.bounds : scene_bounds;
+  const glm::dvec3 low = bounds.empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.min);
+  const glm::dvec3 high = bounds.empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.max);
+  const glm::dvec3 center = 0.5 * (low + high), extent = high - low;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  if (!(longest > 0.0)) return unit_voxels(center, options.cubic ? options.resolution : min_side);
+  if (options.cubic || options.bounds) return anchored_grid(bounds, options);
+
+  Grid grid;
+  grid.voxel = float(longest / (options.resolution - margins));
+  require_distinct_voxels(grid, bounds);
   for (int axis = 0; axis < 3; ++axis)
     // The longest axis is known without rounding.
     grid.size[axis] = extent[axis] == longest ? options.resolution : voxels_along(extent[axis], grid.voxel);

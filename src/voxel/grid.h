@@ -1,12 +1,15 @@
 #pragma once
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "scene/scene.h"
 
 namespace voxref {
 
 struct GridOptions {
-  int resolution = 256;  ///< voxels along the longest side, 16 to 2048
+  int resolution = 256;          ///< voxels along the longest side, 16 to 2048; with `cubic` a power of two
+  bool cubic = false;            ///< a cube from the box's minimum corner, without margin, as the published shaders do
+  std::optional<Bounds> bounds{};  ///< box in place of the scene's own, world units; taken as it is, without margin
 };
 
 /// A box of cubic voxels. Voxel (x,y,z) covers min + h [x,x+1) x [y,y+1) x [z,z+1).
@@ -29,6 +32,8 @@ struct Grid {
 /// least 1.5 voxels of margin, so that walls on the bounds of the longest axis lie at voxel centres rather than on
 /// voxel faces; so does a scene that is flat along an axis, which gets 5 voxels there. Empty or point-like bounds give
 /// a 4^3 grid of unit voxels around them. Spec section 1 (radiometric).
+/// With options.cubic: a cube whose side is the longest of `bounds`, from their minimum corner (villegas2016).
+/// options.bounds take the place of `bounds`.
 /// @throws Error for a resolution out of range, or where float32 coordinates cannot tell such voxels apart
 Grid fit_grid(const Bounds& bounds, const GridOptions& options);
 

@@ -9,6 +9,7 @@
 
 #include "progress.h"
 #include "voxel/brick_volume.h"
+#include "voxel/texel.h"
 #include "voxel/voxelize.h"
 
 namespace voxref {
@@ -27,27 +28,33 @@ struct MipmapOptions {
   MipmapFilter filter = MipmapFilter::anisotropic;
 };
 
-/// Six faces of one texel side by side: premultiplied radiance (rgb) and opacity (a).
-using DirectionalTexel = std::array<glm::vec4, 6>;
+/// Premultiplied radiance (rgb) and opacity (a), six faces.
+using DirectionalTexel = Directional<glm::vec4>;
 
-/// Radiance and opacity of a grid at all scales. Level k of `levels` has texels of 2^(k+1) voxels a side and
-/// ceil(size / 2^(k+1)) of them, anchored at the grid's minimum corner (what sticks out is empty), down to 1x1x1.
-struct Pyramid {
+/// Radiance and opacity of a grid at all scales, held in texels of one storage: glm::vec4 or Rgba8. Level k of `levels`
+/// has texels of 2^(k+1) voxels a side and ceil(size / 2^(k+1)) of them, anchored at the grid's minimum corner (what
+/// sticks out is empty), down to 1x1x1.
+template <class Texel>
+struct BasicPyramid {
   Grid grid;
-  BrickVolume<glm::vec4> base;  ///< premultiplied radiance (rgb) and opacity (a) per voxel
-  std::vector<BrickVolume<DirectionalTexel>> levels;
+  BrickVolume<Texel> base;  ///< premultiplied radiance (rgb) and opacity (a) per voxel
+  std::vector<BrickVolume<Directional<Texel>>> levels;
 
   size_t bytes() const;
 };
+using Pyramid = BasicPyramid<glm::vec4>;
+using Pyramid8 = BasicPyramid<Rgba8>;
 
 /// Spec section 4. For each of the four columns of a 2x2x2 block along the face's axis front + back (1 - alpha_front),
-/// all four channels premultiplied; the value is the mean of the four columns.
+/// all four channels premultiplied; the value is the mean of the four columns, rounded to what the texel can hold.
 /// @param radiance one per occupied voxel, as `shade` returns it (not premultiplied)
-Pyramid mipmap(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance, const MipmapOptions& options,
-               const Progress& progress = {});
+template <class Texel = glm::vec4>
+BasicPyramid<Texel> mipmap(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance,
+                           const MipmapOptions& options, const Progress& progress = {});
 
 /// The same from a base volume alone, for volumes that somebody else made.
-Pyramid mipmap(const Grid& grid, BrickVolume<glm::vec4> base, const MipmapOptions& options,
-               const Progress& progress = {});
+template <class Texel>
+BasicPyramid<Texel> mipmap(const Grid& grid, BrickVolume<Texel> base, const MipmapOptions& options,
+                           const Progress& progress = {});
 
 }  // namespace voxref

@@ -28,8 +28,12 @@ size_t product(std::span<const size_t> sizes) {
   return std::accumulate(sizes.begin(), sizes.end(), size_t{1}, std::multiplies<>());
 }
 
-std::string header_of(std::span<const size_t> shape) {
-  std::string dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
+/// The byte that holds `value` in [0,1]; what lies outside is clamped, NaN is 0. Ties round to even, as in encode().
+uint8_t to_byte(float value) { return uint8_t(std::nearbyint(255.0f * std::min(1.0f, std::max(0.0f, value)))); }
+
+std::string header_of(NpyType type, std::span<const size_t> shape) {
+  std::string dictionary = type == NpyType::float32 ? "{'descr': '<f4'" : "{'descr': '|u1'";
+  dictionary += ", 'fortran_order': False, 'shape': (";
   for (const size_t side : shape) dictionary += std::to_string(side) + ",";
   dictionary += "), }";
   const size_t prefix = magic.size() + 2 + 2;  // version and length
@@ -83,17 +87,20 @@ std::string place_of(std::span<const size_t> shape, size_t i, size_t offset) {
 
 std::string_view dtype_name(NpyType type) { return type == NpyType::float32 ? "float32" : "uint8"; }
 
-void write_npy(const std::filesystem::path& file, std::span<const size_t> shape,
+void write_npy(const std::filesystem::path& file, NpyType type, std::span<const size_t> shape,
                const std::function<void(size_t, std::span<float>)>& fill) {
   write_atomically(file, [&](const std::filesystem::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
-    const std::string header = header_of(shape);
+    const std::string header = header_of(type, shape);
     stream.write(header.data(), std::streamsize(header.size()));
     std::vector<float> slice(product(shape.subspan(1)));
+    std::vector<uint8_t> bytes(type == NpyType::uint8 ? slice.size() : 0);
     for (size_t i = 0; i < shape[0] && stream; ++i) {
       std::fill(slice.begin(), slice.end(), 0.0f);
       fill(i, slice);
-      stream.write(reinterpret_cast<const char*>(slice.data()), std::streamsize(slice.size() * sizeof(float)));
+      std::transform(slice.begin(), slice.begin() + std::ptrdiff_t(bytes.size()), bytes.begin(), to_byte);
+      const void* values = bytes.empty() ? static_cast<const void*>(slice.data()) : bytes.data();
+      stream.write(static_cast<const char*>(values), std::streamsize(slice.size() * bytes_of(type)));
     }
     stream.close();
     if (!stream) throw Error(file.string(), std::string("cannot be written: ") + std::strerror(errno));

@@ -16,8 +16,9 @@ enum class NpyType : uint8_t { float32, uint8 };
 std::string_view dtype_name(NpyType type);
 
 /// Calls fill(i, slice) for each index of the first dimension in turn, `slice` zeroed and of the product of the other
-/// dimensions. The file appears whole or not at all. @throws Error with the path when it cannot be written
-void write_npy(const std::filesystem::path& file, std::span<const size_t> shape,
+/// dimensions. As uint8, values are clamped to [0,1] and stored times 255, rounded to the nearest, ties to even. The
+/// file appears whole or not at all. @throws Error with the path when it cannot be written
+void write_npy(const std::filesystem::path& file, NpyType type, std::span<const size_t> shape,
                const std::function<void(size_t i, std::span<float> slice)>& fill);
 
 class NpyReader {

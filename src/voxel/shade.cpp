@@ -51,23 +51,29 @@ float march_offset(const glm::vec3& side) { return 1.5f * (std::abs(side.x) + st
 
 class Shader {
  public:
-  Shader(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, VoxelShadow shadow)
-      : scene_(scene), caster_(caster), surfaces_(surfaces), shadow_(shadow) {
+  Shader(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
+         VoxelShadow shadow)
+      : scene_(scene), caster_(caster), surfaces_(surfaces), light_options_(light), shadow_(shadow) {
     assert(caster || shadow != VoxelShadow::rays);
     if (shadow == VoxelShadow::volume) medium_ = make_opacity_medium(surfaces);
   }
 
-  glm::vec3 operator()(size_t voxel) const {
+  void operator()(size_t voxel, Shading& shading) const {
     glm::vec3 irradiance(0.0f);
+    float visible = 0.0f;
     for (const Light& light : scene_.lights) {
-      const Illumination arriving = illuminate(light, surfaces_.centroid[voxel]);
+      const Illumination arriving = illuminate(light, surfaces_.centroid[voxel], light_options_);
       if (arriving.irradiance == glm::vec3(0.0f)) continue;
       const Facing surface = facing(surfaces_.normal[voxel], arriving.to_light);
-      if (surface.cosine > 0.0f)
-        irradiance += surface.cosine * visibility(light, voxel, surface.side) * arriving.irradiance;
+      if (!(surface.cosine > 0.0f)) continue;
+      const float share = visibility(light, voxel, surface.side);
+      irradiance += surface.cosine * share * arriving.irradiance;
+      visible += share;
     }
     const glm::vec3 emission = surfaces_.emission.empty() ? glm::vec3(0.0f) : surfaces_.emission[voxel];
-    return emission + glm::vec3(surfaces_.albedo[voxel]) * std::numbers::inv_pi_v<float> * irradiance;
+    shading.radiance[voxel] =
+        emission + glm::vec3(surfaces_.albedo[voxel]) * std::numbers::inv_pi_v<float> * irradiance;
+    shading.visibility[voxel] = visible / std::max(1.0f, float(scene_.lights.size()));
   }
 
  private:
@@ -93,23 +99,24 @@ class Shader {
   const Scene& scene_;
   const Caster* caster_;
   const SurfaceGrid& surfaces_;
+  LightOptions light_options_;
   VoxelShadow shadow_;
   std::optional<Medium> medium_;
 };
 
 }  // namespace
 
-std::vector<glm::vec3> shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces,
-                             const ShadeOptions& options, const Progress& progress) {
-  const Shader shader(scene, caster, surfaces, options.shadow);
-  std::vector<glm::vec3> radiance(surfaces.size());
+Shading shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
+              const ShadeOptions& options, const Progress& progress) {
+  const Shader shader(scene, caster, surfaces, light, options.shadow);
+  Shading shading{std::vector<glm::vec3>(surfaces.size()), std::vector<float>(surfaces.size())};
   std::atomic<size_t> finished = 0;
-  parallel_for(radiance.size(), 1024, [&](size_t begin, size_t end) {
+  parallel_for(surfaces.size(), 1024, [&](size_t begin, size_t end) {
     progress.check();
-    for (size_t i = begin; i < end; ++i) radiance[i] = shader(i);
-    progress("shade", double(finished += end - begin) / double(radiance.size()));
+    for (size_t i = begin; i < end; ++i) shader(i, shading);
+    progress("shade", double(finished += end - begin) / double(surfaces.size()));
   });
-  return radiance;
+  return shading;
 }
 
 }  // namespace voxref

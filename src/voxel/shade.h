@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "progress.h"
@@ -14,18 +15,38 @@ enum class VoxelShadow : uint8_t {
   rays,   ///< shadow rays to the triangles
   volume  ///< a march through the voxels' opacity
 };
-
-struct ShadeOptions {
-  VoxelShadow shadow = VoxelShadow::rays;
+enum class ShadePosition : uint8_t {
+  centroid,  ///< of the surface in the voxel
+  corner     ///< the voxel's minimum corner, half a voxel along the normal
+};
+enum class ShadeNormalization : uint8_t {
+  lambert,  ///< albedo / pi
+  none      ///< albedo
 };
 
-/// Outgoing radiance of each occupied voxel, W/(sr m^2), in SurfaceGrid's order: emission + albedo/pi x irradiance x
+struct ShadeOptions {
+  ShadePosition position = ShadePosition::centroid;
+  bool two_sided = true;         ///< where opposite normals cancel, the voxel is lit from both sides
+  bool normal_weighted = false;  ///< sum over axes of n_a^2 max(sign(n_a) l_a, 0) in place of max(n.l, 0)
+  ShadeNormalization normalization = ShadeNormalization::lambert;
+  VoxelShadow shadow = VoxelShadow::rays;
+  /// Square root of what a voxel of a marched shadow blocks, 0 to 1; none: the voxels' extinction is marched.
+  std::optional<float> shadow_hit{};
+};
+
+/// What light does to each occupied voxel, in SurfaceGrid's order.
+struct Shading {
+  std::vector<glm::vec3> radiance;  ///< outgoing, W/(sr m^2); not premultiplied
+  std::vector<float> visibility;    ///< mean over the lights of the share that arrives, in [0,1]; 0 without lights
+};
+
+/// Radiance of each occupied voxel: emission + albedo/pi x irradiance x
 /// visibility of the punctual lights, at the voxel's centroid, with max(n.l, 0) of the unit mean normal: a voxel stands
 /// for its surface's front. Where opposite normals cancel (mean normal shorter than two_sided_length) the voxel is lit
 /// as a sheet that faces the light with the mean |cos| of a random orientation, 1/2. Shadow rays start half a voxel off
 /// the surface. Spec section 3 (radiometric).
 /// @param caster may be null unless shadow is `rays`
-std::vector<glm::vec3> shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces,
-                             const ShadeOptions& options, const Progress& progress = {});
+Shading shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
+              const ShadeOptions& options, const Progress& progress = {});
 
 }  // namespace voxref

@@ -8,8 +8,6 @@ namespace voxref {
 
 namespace {
 
-constexpr const char* signed_bytes = "0.5 n + 0.5";  // how the published shaders store normals
-
 glm::ivec3 size_of(const VolumeEntry& entry) { return {int(entry.shape[2]), int(entry.shape[1]), int(entry.shape[0])}; }
 
 bool empty(std::span<const float> texel) {
@@ -90,6 +88,7 @@ SurfaceGrid VolumeFolder::surfaces() const {
     if (texel[3] == 0.0f) return;
     surfaces.voxels.push_back(voxel);
     surfaces.albedo.emplace_back(rgb(texel), counts ? 1.0f : texel[3]);
+    if (counts) surfaces.fragments.push_back(uint8_t(std::lround(255.0f * texel[3])));
   });
 
   const VolumeEntry& normal = entry("normal");
@@ -125,9 +124,10 @@ std::vector<glm::vec3> VolumeFolder::radiance(const SurfaceGrid& surfaces, bool 
   return radiance;
 }
 
-BrickVolume<glm::vec4> VolumeFolder::base(bool bounced) const {
+template <class Texel>
+BrickVolume<Texel> VolumeFolder::base(bool bounced) const {
   const VolumeEntry& volume = entry(radiance_name(bounced));
-  BrickVolume<glm::vec4> base(grid().size);
+  BrickVolume<Texel> base(grid().size);
   BrickSet bricks(base.brick_grid());
   NpyReader reader = open(volume, base.size(), 4);
   for_each_texel(reader, volume, [&](const glm::ivec3& voxel, std::span<const float> texel) {
@@ -136,13 +136,14 @@ BrickVolume<glm::vec4> VolumeFolder::base(bool bounced) const {
   });
   base.allocate(bricks.sorted());
   for_each_texel(reader, volume, [&](const glm::ivec3& voxel, std::span<const float> texel) {
-    if (!empty(texel)) base(voxel) = premultiplied(volume, texel);
+    if (!empty(texel)) base(voxel) = encode<Texel>(load(premultiplied(volume, texel)));
   });
   return base;
 }
 
-BrickVolume<DirectionalTexel> VolumeFolder::level(size_t level, const glm::ivec3& size, bool bounced) const {
-  BrickVolume<DirectionalTexel> texels(size);
+template <class Texel>
+BrickVolume<Directional<Texel>> VolumeFolder::level(size_t level, const glm::ivec3& size, bool bounced) const {
+  BrickVolume<Directional<Texel>> texels(size);
   BrickSet bricks(texels.brick_grid());
   const auto visit_faces = [&](auto&& visit) {
     for (size_t face = 0; face < face_names.size(); ++face) {
@@ -156,17 +157,25 @@ BrickVolume<DirectionalTexel> VolumeFolder::level(size_t level, const glm::ivec3
   };
   visit_faces([&](size_t, const glm::ivec3& voxel, const glm::vec4&) { bricks.add(voxel / texels.side); });
   texels.allocate(bricks.sorted());
-  visit_faces([&](size_t face, const glm::ivec3& voxel, const glm::vec4& value) { texels(voxel)[face] = value; });
+  visit_faces([&](size_t face, const glm::ivec3& voxel, const glm::vec4& value) {
+    texels(voxel)[face] = encode<Texel>(load(value));
+  });
   return texels;
 }
 
-Pyramid VolumeFolder::pyramid(bool bounced) const {
-  Pyramid pyramid{grid(), base(bounced), {}};
+template <class Texel>
+BasicPyramid<Texel> VolumeFolder::pyramid(bool bounced) const {
+  BasicPyramid<Texel> pyramid{grid(), base<Texel>(bounced), {}};
   for (glm::ivec3 size = grid().size; size != glm::ivec3(1);) {
     size = (size + 1) / 2;
-    pyramid.levels.push_back(level(pyramid.levels.size(), size, bounced));
+    pyramid.levels.push_back(level<Texel>(pyramid.levels.size(), size, bounced));
   }
   return pyramid;
 }
+
+template BrickVolume<glm::vec4> VolumeFolder::base(bool) const;
+template BrickVolume<Rgba8> VolumeFolder::base(bool) const;
+template Pyramid VolumeFolder::pyramid(bool) const;
+template Pyramid8 VolumeFolder::pyramid(bool) const;
 
 }  // namespace voxref

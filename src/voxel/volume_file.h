@@ -21,20 +21,23 @@ class VolumeFolder {
   const Grid& grid() const { return index_.grid; }
   const std::vector<VolumeEntry>& entries() const { return index_.volumes; }
   bool has(const std::string& volume) const { return index_.find(volume) != nullptr; }
-  /// Voxels whose albedo's alpha is above zero; an alpha that counts fragments stands for opacity 1. Without a centroid
+  /// Voxels whose albedo's alpha is above zero; where alpha counts fragments the opacity is 1. Without a centroid
   /// volume the voxel centres stand in, and an emission volume without light is left out.
   SurfaceGrid surfaces() const;
   /// radiance or radiance_bounce at the surfaces' voxels, not premultiplied.
   std::vector<glm::vec3> radiance(const SurfaceGrid& surfaces, bool bounced) const;
   /// radiance or radiance_bounce, premultiplied, whichever way it is stored.
-  BrickVolume<glm::vec4> base(bool bounced) const;
+  template <class Texel = glm::vec4>
+  BrickVolume<Texel> base(bool bounced) const;
   /// Base and all levels; the levels as they are in the folder, not recomputed.
-  Pyramid pyramid(bool bounced) const;
+  template <class Texel = glm::vec4>
+  BasicPyramid<Texel> pyramid(bool bounced) const;
 
  private:
   /// Opens a volume and holds it against its entry and the size that its place in the pipeline asks for.
   NpyReader open(const VolumeEntry& entry, const glm::ivec3& size, size_t least_channels) const;
-  BrickVolume<DirectionalTexel> level(size_t level, const glm::ivec3& size, bool bounced) const;
+  template <class Texel>
+  BrickVolume<Directional<Texel>> level(size_t level, const glm::ivec3& size, bool bounced) const;
   const VolumeEntry& entry(const std::string& name) const;
   std::string file(const VolumeEntry& entry) const;
   /// Calls get(i, texel) with the texel of each of the surfaces' voxels.

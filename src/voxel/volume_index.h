@@ -31,6 +31,8 @@ struct VolumeIndex {
   const VolumeEntry* find(const std::string& name) const;  ///< null when there is none
 };
 
+inline constexpr const char* signed_bytes = "0.5 n + 0.5";  ///< encoding of normals in unorm8
+
 /// radiance, or radiance_bounce after bounces.
 std::string radiance_name(bool bounced);
 /// aniso_<face>_<level> or aniso_bounce_<face>_<level>. @param face index into face_names

@@ -12,17 +12,20 @@ namespace {
 void store(const glm::vec3& v, float* channels) { std::copy_n(&v.x, 3, channels); }
 void store(const glm::vec4& v, float* channels) { std::copy_n(&v.x, 4, channels); }
 
-/// Slice z of a brick volume. @param value turns a texel into RGBA
+/// Slice z of a brick volume. @param value picks what to write of a texel
 template <class Texel, class Value>
 void fill_slice(const BrickVolume<Texel>& volume, int z, std::span<float> slice, Value&& value) {
   float* channels = slice.data();
   for (int y = 0; y < volume.size().y; ++y)
-    for (int x = 0; x < volume.size().x; ++x, channels += 4) store(value(volume({x, y, z})), channels);
+    for (int x = 0; x < volume.size().x; ++x, channels += 4) store(to_vec4(decode(value(volume({x, y, z})))), channels);
 }
+
+constexpr const char* counted = "count of averaged fragments, modulo 256";
 
 }  // namespace
 
-VolumeFolderWriter::VolumeFolderWriter(std::filesystem::path folder, const Grid& grid) : folder_(std::move(folder)) {
+VolumeFolderWriter::VolumeFolderWriter(std::filesystem::path folder, const Grid& grid, Storage storage)
+    : folder_(std::move(folder)) {
   std::error_code error;
   for (std::filesystem::path missing = folder_; !missing.empty() && !std::filesystem::exists(missing, error);
        missing = missing.parent_path())
@@ -33,6 +36,7 @@ VolumeFolderWriter::VolumeFolderWriter(std::filesystem::path folder, const Grid&
     throw Error(folder_.string(), "cannot be made: " + error.message());
   }
   index_.grid = grid;
+  index_.format = storage == Storage::unorm8 ? "unorm8" : "float32";
 }
 
 VolumeFolderWriter::~VolumeFolderWriter() {
@@ -53,6 +57,7 @@ VolumeEntry VolumeFolderWriter::entry(const std::string& name, const glm::ivec3&
   VolumeEntry entry;
   entry.name = name;
   entry.shape = {size_t(size.z), size_t(size.y), size_t(size.x), channels};
+  entry.type = in_bytes() ? NpyType::uint8 : NpyType::float32;
   entry.stage = stage;
   if (channels == 4) entry.alpha = "opacity";
   return entry;
@@ -65,7 +70,7 @@ void VolumeFolderWriter::write(const VolumeEntry& entry,
     std::filesystem::remove(index_file(folder_), error);
     if (error) throw Error(index_file(folder_).string(), "cannot be replaced: " + error.message());
   }
-  write_npy(file(entry), entry.shape, fill);
+  write_npy(file(entry), entry.type, entry.shape, fill);
   index_.volumes.push_back(entry);
 }
 
@@ -82,16 +87,39 @@ void VolumeFolderWriter::write_sparse(const VolumeEntry& entry, const SurfaceGri
 }
 
 void VolumeFolderWriter::write_surfaces(const SurfaceGrid& surfaces) {
-  const glm::ivec3& size = index_.grid.size;
-  write_sparse(entry("albedo", size, 4, "voxelize"), surfaces,
-               [&](size_t i, float* channels) { store(surfaces.albedo[i], channels); });
-  const auto write_vectors = [&](const std::string& name, const std::vector<glm::vec3>& values) {
-    write_sparse(entry(name, size, 3, "voxelize"), surfaces,
-                 [&](size_t i, float* channels) { store(values[i], channels); });
+  const bool counts = !surfaces.fragments.empty();
+  const auto alpha = [&](size_t i) {
+    return counts ? float(surfaces.fragments[i]) * (1.0f / 255.0f) : surfaces.albedo[i].a;
   };
-  write_vectors("normal", surfaces.normal);
-  write_vectors("centroid", surfaces.centroid);
-  if (!surfaces.emission.empty()) write_vectors("emission", surfaces.emission);
+  const auto attribute = [&](const std::string& name, size_t channels) {
+    VolumeEntry volume = entry(name, index_.grid.size, channels, "voxelize");
+    if (counts && channels == 4) volume.alpha = counted;
+    return volume;
+  };
+  write_sparse(attribute("albedo", 4), surfaces,
+               [&](size_t i, float* channels) { store(glm::vec4(glm::vec3(surfaces.albedo[i]), alpha(i)), channels); });
+  if (!in_bytes()) {
+    const auto write_vectors = [&](const std::string& name, const std::vector<glm::vec3>& values) {
+      write_sparse(attribute(name, 3), surfaces, [&](size_t i, float* channels) { store(values[i], channels); });
+    };
+    write_vectors("normal", surfaces.normal);
+    write_vectors("centroid", surfaces.centroid);
+    if (!surfaces.emission.empty()) write_vectors("emission", surfaces.emission);
+    return;
+  }
+  VolumeEntry normal = attribute("normal", 4);
+  normal.encoding = signed_bytes;
+  write_sparse(normal, surfaces, [&](size_t i, float* channels) {
+    store(glm::vec4(0.5f * surfaces.normal[i] + 0.5f, alpha(i)), channels);
+  });
+  write_sparse(attribute("emission", 4), surfaces, [&](size_t i, float* channels) {
+    store(glm::vec4(surfaces.emission.empty() ? glm::vec3(0.0f) : surfaces.emission[i], alpha(i)), channels);
+  });
+}
+
+void VolumeFolderWriter::write_visibility(const SurfaceGrid& surfaces, std::span<const float> visibility) {
+  write_sparse(entry("visibility", index_.grid.size, 1, "shade"), surfaces,
+               [&](size_t i, float* channels) { *channels = visibility[i]; });
 }
 
 void VolumeFolderWriter::write_radiance(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance,
@@ -104,28 +132,35 @@ void VolumeFolderWriter::write_radiance(const SurfaceGrid& surfaces, std::span<c
   });
 }
 
-void VolumeFolderWriter::write_base(const BrickVolume<glm::vec4>& base, bool bounced) {
+template <class Texel>
+void VolumeFolderWriter::write_base(const BrickVolume<Texel>& base, bool bounced) {
   VolumeEntry volume = entry(radiance_name(bounced), base.size(), 4, bounced ? "bounce" : "shade");
   volume.premultiplied = true;
   write(volume, [&](size_t z, std::span<float> slice) {
-    fill_slice(base, int(z), slice, [](const glm::vec4& texel) { return texel; });
+    fill_slice(base, int(z), slice, [](const Texel& texel) { return texel; });
   });
 }
 
-void VolumeFolderWriter::write_levels(const Pyramid& pyramid, bool bounced) {
+template <class Texel>
+void VolumeFolderWriter::write_levels(const BasicPyramid<Texel>& pyramid, bool bounced) {
   for (size_t face = 0; face < face_names.size(); ++face)
     for (size_t level = 0; level < pyramid.levels.size(); ++level) {
-      const BrickVolume<DirectionalTexel>& texels = pyramid.levels[level];
+      const BrickVolume<Directional<Texel>>& texels = pyramid.levels[level];
       VolumeEntry volume =
           entry(aniso_name(face, level, bounced), texels.size(), 4, bounced ? "mipmap after bounce" : "mipmap");
       volume.face = face_names[face];
       volume.level = int(level);
       volume.premultiplied = true;
       write(volume, [&](size_t z, std::span<float> slice) {
-        fill_slice(texels, int(z), slice, [&](const DirectionalTexel& texel) { return texel[face]; });
+        fill_slice(texels, int(z), slice, [&](const Directional<Texel>& texel) { return texel[face]; });
       });
     }
 }
+
+template void VolumeFolderWriter::write_base(const BrickVolume<glm::vec4>&, bool);
+template void VolumeFolderWriter::write_base(const BrickVolume<Rgba8>&, bool);
+template void VolumeFolderWriter::write_levels(const Pyramid&, bool);
+template void VolumeFolderWriter::write_levels(const Pyramid8&, bool);
 
 void VolumeFolderWriter::finish() {
   write_volume_index(folder_, index_);

@@ -12,25 +12,30 @@
 
 namespace voxref {
 
-/// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), float32, dense (cli.md,
-/// "Volumes"). The radiometric profile writes albedo (a = opacity), normal, centroid (world), emission where the scene
-/// has it, radiance, radiance_bounce, aniso_<face>_<level>, aniso_bounce_<face>_<level>. Radiance and aniso volumes are
-/// premultiplied. Files appear whole or not at all, and all of them or none; volumes.json goes away with the first
-/// volume that is written and comes back last, so that it never describes a mixture. Volumes pass through memory a
-/// slice at a time.
+/// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), dense (cli.md,
+/// "Volumes"): albedo (a = opacity), normal, emission, visibility, radiance, radiance_bounce, aniso_<face>_<level>,
+/// aniso_bounce_<face>_<level>. Radiance and aniso volumes are premultiplied. In float32 there is centroid (world) too,
+/// and emission only where the scene has it. In unorm8 volumes are uint8, normals as 0.5 n + 0.5; of voxels that count
+/// their fragments, albedo, normal and emission have the count as alpha. Files appear whole or not at all, and all of
+/// them or none; volumes.json goes away with the first volume that is written and comes back last, so that it never
+/// describes a mixture. Volumes pass through memory a slice at a time.
 class VolumeFolderWriter {
  public:
   /// Makes the folder, and those above it, where they are missing. @throws Error with the path
-  VolumeFolderWriter(std::filesystem::path folder, const Grid& grid);
+  VolumeFolderWriter(std::filesystem::path folder, const Grid& grid, Storage storage = Storage::float32);
   /// Without finish() removes the volumes that it wrote, and the folders that it made unless others use them.
   ~VolumeFolderWriter();
   VolumeFolderWriter(const VolumeFolderWriter&) = delete;
   void write_surfaces(const SurfaceGrid& surfaces);
+  /// @param visibility one per voxel of `surfaces`
+  void write_visibility(const SurfaceGrid& surfaces, std::span<const float> visibility);
   /// @param radiance one per voxel of `surfaces`, not premultiplied
   /// @param bounced names it radiance_bounce instead of radiance; so below
   void write_radiance(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance, bool bounced);
-  void write_base(const BrickVolume<glm::vec4>& base, bool bounced);
-  void write_levels(const Pyramid& pyramid, bool bounced);
+  template <class Texel>
+  void write_base(const BrickVolume<Texel>& base, bool bounced);
+  template <class Texel>
+  void write_levels(const BasicPyramid<Texel>& pyramid, bool bounced);
   /// Writes volumes.json. Nothing that was written counts before.
   void finish();
 
@@ -41,6 +46,7 @@ class VolumeFolderWriter {
   void write_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces,
                     const std::function<void(size_t i, float* channels)>& put);
   void remove_made_folders() const;
+  bool in_bytes() const { return index_.format == "unorm8"; }
   std::filesystem::path file(const VolumeEntry& entry) const { return folder_ / (entry.name + ".npy"); }
   VolumeEntry entry(const std::string& name, const glm::ivec3& size, size_t channels, const std::string& stage) const;
 

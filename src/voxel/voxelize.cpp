@@ -198,7 +198,7 @@ SurfaceGrid merge(const Grid& grid, std::vector<std::vector<Voxel>>&& bricks, bo
 
 size_t SurfaceGrid::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return of(voxels) + of(area) + of(albedo) + of(normal) + of(centroid) + of(emission);
+  return of(voxels) + of(area) + of(fragments) + of(albedo) + of(normal) + of(centroid) + of(emission);
 }
 
 std::vector<glm::ivec3> occupied_bricks(const SurfaceGrid& surfaces) {

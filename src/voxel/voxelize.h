@@ -9,13 +9,24 @@
 
 namespace voxref {
 
+enum class VoxelizeMethod : uint8_t {
+  exact,  ///< clips triangles against voxels
+  raster  ///< one fragment per pixel of the triangle's main axis, as the published shaders do
+};
+enum class VoxelAverage : uint8_t {
+  area,           ///< of the pieces of surface, in any order
+  running_floor8  ///< in bytes that are rounded down after each fragment, in draw order
+};
 enum class VoxelOpacity : uint8_t {
   occupied,  ///< 1 wherever there is surface
   coverage   ///< projected area of the surface in the voxel over the voxel's own, along the mean normal, at most 1
 };
 
 struct VoxelizeOptions {
+  VoxelizeMethod method = VoxelizeMethod::exact;
+  VoxelAverage average = VoxelAverage::area;  ///< area goes with exact, running_floor8 with raster
   VoxelOpacity opacity = VoxelOpacity::occupied;
+  bool static_wins = false;  ///< dynamic surfaces leave voxels of static ones alone; else they share them
 };
 
 /// The occupied voxels of a grid: what the surfaces in each are like on average, weighted by area. Structure of arrays,
@@ -23,7 +34,8 @@ struct VoxelizeOptions {
 struct SurfaceGrid {
   Grid grid;
   std::vector<glm::ivec3> voxels;  ///< index of each occupied voxel
-  std::vector<float> area;         ///< of the surface in the voxel, square world units; empty: read from volumes
+  std::vector<float> area;         ///< of the surface in the voxel, square world units; empty: not known
+  std::vector<uint8_t> fragments;  ///< averaged into each voxel, modulo 256; empty unless running_floor8
   std::vector<glm::vec4> albedo;   ///< rgb in [0,1], linear: diffuse albedo plus that of the specular lobe; a = opacity
   std::vector<glm::vec3> normal;   ///< mean of unit normals, out of the front; length in [0,1] tells their spread
   std::vector<glm::vec3> centroid;  ///< world

@@ -20,7 +20,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 Medium medium_of(const Scene& scene, const Caster& caster, int resolution,
                  const glm::vec3& background = glm::vec3(0.0f)) {
   const SurfaceGrid surfaces = voxelize(scene, fit_grid(scene.bounds(), {resolution}), {});
-  const std::vector<glm::vec3> direct = shade(scene, &caster, surfaces, {});
+  const std::vector<glm::vec3> direct = shade(scene, &caster, surfaces, {}, {}).radiance;
   return make_medium(bounce(surfaces, direct, {}, {}, {}, background).pyramid);
 }
 

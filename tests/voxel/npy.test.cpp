@@ -59,7 +59,7 @@ TEST_CASE("an array comes back bit by bit, denormals, negative zero and extremes
                                6,
                                7,
                                8};
-  write_npy(folder.path / "a.npy", shape, [&](size_t i, std::span<float> slice) {
+  write_npy(folder.path / "a.npy", NpyType::float32, shape, [&](size_t i, std::span<float> slice) {
     for (const float v : slice) CHECK(v == 0.0f);
     std::copy_n(values.begin() + 4 * i, 4, slice.begin());
   });
@@ -78,7 +78,8 @@ TEST_CASE("an array comes back bit by bit, denormals, negative zero and extremes
 TEST_CASE("an array file is laid out as NumPy does it", "[npy]") {
   const TemporaryFolder folder;
   const std::vector<size_t> shape = {2, 3};
-  write_npy(folder.path / "a.npy", shape, [](size_t i, std::span<float> slice) { slice[2] = float(i + 1); });
+  write_npy(folder.path / "a.npy", NpyType::float32, shape,
+            [](size_t i, std::span<float> slice) { slice[2] = float(i + 1); });
   const std::string content = read_file(folder.path / "a.npy");
   CHECK(content.starts_with("\x93NUMPY"));
   REQUIRE(content.size() % 64 == 24);  // values start at a multiple of 64
@@ -139,8 +140,10 @@ TEST_CASE("a value that is not finite is reported with its place", "[npy]") {
 TEST_CASE("an array that cannot be written leaves nothing behind", "[npy]") {
   const TemporaryFolder folder;
   const std::vector<size_t> shape = {2, 3};
-  CHECK_THROWS_AS(write_npy(folder.path / "none" / "a.npy", shape, [](size_t, std::span<float>) {}), Error);
-  CHECK_THROWS_AS(write_npy(folder.path / "a.npy", shape, [](size_t, std::span<float>) { throw Interrupted(); }),
-                  Interrupted);
+  CHECK_THROWS_AS(write_npy(folder.path / "none" / "a.npy", NpyType::float32, shape, [](size_t, std::span<float>) {}),
+                  Error);
+  CHECK_THROWS_AS(
+      write_npy(folder.path / "a.npy", NpyType::float32, shape, [](size_t, std::span<float>) { throw Interrupted(); }),
+      Interrupted);
   CHECK(std::filesystem::is_empty(folder.path));
 }

@@ -34,7 +34,9 @@ struct Shaded {
 Shaded shaded(const Scene& scene, const Grid& grid, VoxelShadow shadow = VoxelShadow::rays) {
   const Caster caster(scene);
   Shaded result{voxelize(scene, grid, {}), {}};
-  result.radiance = shade(scene, &caster, result.surfaces, {shadow});
+  ShadeOptions options;
+  options.shadow = shadow;
+  result.radiance = shade(scene, &caster, result.surfaces, {}, options).radiance;
   return result;
 }
 
@@ -217,5 +219,7 @@ TEST_CASE("shading has the same bits on one thread and on two, and nothing to do
     return shaded(scene, unit_grid(glm::ivec3(48))).radiance;
   };
   CHECK(with(1) == with(2));
-  CHECK(shade(scene, nullptr, SurfaceGrid{}, {VoxelShadow::none}).empty());
+  ShadeOptions options;
+  options.shadow = VoxelShadow::none;
+  CHECK(shade(scene, nullptr, SurfaceGrid{}, {}, options).radiance.empty());
 }

@@ -39,9 +39,12 @@ int run_cone(const ConeCommandOptions& options) {
 }
 
 std::string parameter_table() {
-  std::string table = "Parameters (--set KEY=VALUE, or nested JSON in a --config file): default, range, meaning\n";
+  std::string table =
+      "Parameters (--set KEY=VALUE, or nested JSON in a --config file): value in the profiles radiometric and "
+      "villegas2016, range, meaning\n";
   for (const ParameterHelp& line : parameter_help())
-    table += fmt::format("  {:<29} {:<16} {:<30} {}\n", line.key, line.value, line.range, line.meaning);
+    table += fmt::format("  {:<29} {:<16} {:<16} {:<30} {}\n", line.key, line.radiometric, line.villegas2016,
+                         line.range, line.meaning);
   return table;
 }
 

@@ -65,7 +65,9 @@ Scene without_textures(const Scene& scene) {
 }
 
 VolumeNeed measure(const Scene& scene, int resolution, const Progress& progress) {
-  const Grid grid = fit_grid(scene.bounds(), {resolution});
+  GridOptions options;
+  options.resolution = resolution;
+  const Grid grid = fit_grid(scene.bounds(), options);
   const SurfaceGrid surfaces = voxelize(scene, grid, {}, progress);
   VolumeNeed need;
   need.resolution = resolution;

@@ -121,6 +121,7 @@ Settings make_settings(const SettingsOptions& options) {
       throw Error("--set", error.what());
     }
   }
+  validate(settings);
   return settings;
 }
 

@@ -131,7 +131,7 @@ void add_path_options(CLI::App& command, PathOptions& options) {
 }
 
 void add_settings_options(CLI::App& command, SettingsOptions& options) {
-  command.add_option("--profile", options.profile, "parameters to start from: radiometric (default)")
+  command.add_option("--profile", options.profile, "parameters to start from: radiometric (default) or villegas2016")
       ->type_name("NAME");
   command.add_option("--config", options.config, "parameters as JSON")->type_name("FILE");
   command.add_option("--set", options.assignments, "one parameter (repeatable); voxref cone --help lists them")

@@ -44,33 +44,42 @@ void run_shade(const Input& input) {
   const Scene scene = stage_scene(input);
   const Caster caster(scene);
   const SurfaceGrid surfaces = input.volumes.surfaces();
-  const auto radiance = shade(scene, &caster, surfaces, input.settings.shade, input.terminal.progress());
-  VolumeFolderWriter writer(input.output, surfaces.grid);
-  writer.write_radiance(surfaces, radiance, false);
+  const Settings& settings = input.settings;
+  const Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, input.terminal.progress());
+  VolumeFolderWriter writer(input.output, surfaces.grid, settings.storage);
+  writer.write_visibility(surfaces, lit.visibility);
+  writer.write_radiance(surfaces, lit.radiance, false);
   writer.finish();
 }
 
+template <class Texel>
 void run_mipmap(const Input& input) {
   const Grid& grid = input.volumes.grid();
-  VolumeFolderWriter writer(input.output, grid);
+  VolumeFolderWriter writer(input.output, grid, input.settings.storage);
   bool found = false;
   for (const bool bounced : {false, true}) {
     if (!input.volumes.has(bounced ? "radiance_bounce" : "radiance")) continue;
     found = true;
-    writer.write_levels(mipmap(grid, input.volumes.base(bounced), input.settings.mipmap, input.terminal.progress()),
-                        bounced);
+    writer.write_levels(
+        mipmap(grid, input.volumes.base<Texel>(bounced), input.settings.mipmap, input.terminal.progress()), bounced);
   }
   if (!found) throw Error(input.options.from, "volumes.json", "has neither radiance nor radiance_bounce to filter");
   writer.finish();
 }
 
+template <class Texel>
 void run_bounce(const Input& input) {
   const SurfaceGrid surfaces = input.volumes.surfaces();
   const auto direct = input.volumes.radiance(surfaces, false);
   const Settings& settings = input.settings;
-  const BounceResult result = bounce(surfaces, direct, settings.bounce, settings.render.cone, settings.mipmap,
-                                     input.options.view.background, input.terminal.progress());
-  VolumeFolderWriter writer(input.output, surfaces.grid);
+  // What the stage before made of it, where it is there: an error in it shall not be taken for one of this stage.
+  const bool filtered = input.volumes.has(aniso_name(0, 0, false));
+  BasicPyramid<Texel> pyramid =
+      filtered ? input.volumes.pyramid<Texel>(false) : mipmap<Texel>(surfaces, direct, settings.mipmap);
+  const BasicBounceResult<Texel> result =
+      bounce(surfaces, direct, std::move(pyramid), settings.bounce, settings.render.cone, settings.mipmap,
+             input.options.view.background, input.terminal.progress());
+  VolumeFolderWriter writer(input.output, surfaces.grid, settings.storage);
   writer.write_radiance(surfaces, result.radiance, true);
   writer.write_levels(result.pyramid, true);
   writer.finish();
@@ -99,9 +108,10 @@ int run_stage(const Options& options) {
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Input input{options, make_settings(options.settings), VolumeFolder(options.from), terminal, options.output};
+  const bool bytes = input.settings.storage == Storage::unorm8;
   if (options.stage == "shade") run_shade(input);
-  if (options.stage == "mipmap") run_mipmap(input);
-  if (options.stage == "bounce") run_bounce(input);
+  if (options.stage == "mipmap") bytes ? run_mipmap<Rgba8>(input) : run_mipmap<glm::vec4>(input);
+  if (options.stage == "bounce") bytes ? run_bounce<Rgba8>(input) : run_bounce<glm::vec4>(input);
   if (options.stage == "gather") run_gather(input);
   terminal.say("written   " + options.output);
   terminal.result({{"stage", options.stage}, {"from", options.from}, {"output", options.output}});
@@ -121,8 +131,9 @@ void add_stage(CLI::App& program, Run& run) {
               throw Error("STAGE", "'" + name + "' is not shade, mipmap, bounce or gather");
             options->stage = name;
           },
-          "shade (albedo, normal, emission -> radiance), mipmap (radiance, radiance_bounce -> aniso_*, "
-          "aniso_bounce_*), bounce (radiance -> radiance_bounce, aniso_bounce_*) or gather (aniso_bounce_*, or "
+          "shade (albedo, normal, emission -> radiance, visibility), mipmap (radiance, radiance_bounce -> aniso_*, "
+          "aniso_bounce_*), bounce (radiance, and aniso_* if there -> radiance_bounce, aniso_bounce_*) or gather "
+          "(aniso_bounce_*, or "
           "aniso_* where there is no bounce -> gather.exr)")
       ->required()
       ->type_name("");
