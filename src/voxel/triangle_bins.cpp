@@ -49,13 +49,15 @@ ClipPolygon VoxelTriangles::operator()(uint32_t triangle) const {
   return polygon;
 }
 
-TriangleBins bin_triangles(const VoxelTriangles& triangles, size_t count, const Progress& progress) {
+TriangleBins bin_triangles(const VoxelTriangles& triangles, const std::vector<bool>& chosen, const Progress& progress) {
+  const size_t count = chosen.size();
   const glm::ivec3 size = triangles.grid().size, bricks = (size + side - 1) / side;
   std::vector<std::vector<Entry>> chunks((count + triangles_per_chunk - 1) / triangles_per_chunk);
   parallel_for(count, triangles_per_chunk, [&](size_t begin, size_t end) {
     progress.check();
     std::vector<Entry>& entries = chunks[begin / triangles_per_chunk];
     for (size_t t = begin; t < end; ++t) {
+      if (!chosen[t]) continue;
       const ClipPolygon polygon = triangles(uint32_t(t));
       const glm::dvec3 area = twice_vector_area(polygon);
       if (!(glm::dot(area, area) > 0.0)) continue;

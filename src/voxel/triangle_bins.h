@@ -40,6 +40,7 @@ struct TriangleBins {
 };
 
 /// Finds by clipping which triangles reach into which bricks; triangles without area reach nowhere.
-TriangleBins bin_triangles(const VoxelTriangles& triangles, size_t count, const Progress& progress);
+/// @param chosen one per triangle of the scene: whether it counts
+TriangleBins bin_triangles(const VoxelTriangles& triangles, const std::vector<bool>& chosen, const Progress& progress);
 
 }  // namespace voxref

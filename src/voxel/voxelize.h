@@ -36,6 +36,7 @@ struct SurfaceGrid {
   std::vector<glm::ivec3> voxels;  ///< index of each occupied voxel
   std::vector<float> area;         ///< of the surface in the voxel, square world units; empty: not known
   std::vector<uint8_t> fragments;  ///< averaged into each voxel, modulo 256; empty unless running_floor8
+  std::vector<uint8_t> dynamic;    ///< 1: no static surface is in the voxel; empty: there are none such
   std::vector<glm::vec4> albedo;   ///< rgb in [0,1], linear: diffuse albedo plus that of the specular lobe; a = opacity
   std::vector<glm::vec3> normal;   ///< mean of unit normals, out of the front; length in [0,1] tells their spread
   std::vector<glm::vec3> centroid;  ///< world
@@ -54,6 +55,13 @@ inline constexpr float two_sided_length = 0.25f;
 /// @param grid any; surfaces outside it are left out
 SurfaceGrid voxelize(const Scene& scene, const Grid& grid, const VoxelizeOptions& options,
                      const Progress& progress = {});
+
+/// The two halves of it, for scenes whose dynamic objects move: the static ones are voxelized once, and for each frame
+/// the dynamic ones are added to what they gave. Clears what was dynamic before, since `fixed` holds none of it.
+SurfaceGrid voxelize_static(const Scene& scene, const Grid& grid, const VoxelizeOptions& options,
+                            const Progress& progress = {});
+SurfaceGrid add_dynamic(const Scene& scene, SurfaceGrid fixed, const VoxelizeOptions& options,
+                        const Progress& progress = {});
 
 /// Brick coordinates (see BrickVolume) of the bricks that hold occupied voxels, sorted z, y, x.
 std::vector<glm::ivec3> occupied_bricks(const SurfaceGrid& surfaces);
