@@ -84,11 +84,16 @@ ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, 
     }
   }
   result.bytes = count_bytes(surfaces, pyramid, bounces ? 2 : 1);
+  std::optional<LightVisibility> visibility;
+  if (settings.render.pixel.shadow == PixelShadow::visibility) visibility.emplace(surfaces, shading.visibility);
   surfaces = {};  // the image needs none of them
   shading = {};
   result.image = timed(seconds.cone_trace, [&] {
-    const Medium medium = make_medium(std::move(pyramid));
-    return render_cones(scene, caster, medium, view, settings.render, progress);
+    const LitVolume volume = lit_volume(std::move(pyramid), settings.render.cone.opacity);
+    const LitScene lit{scene,          caster,
+                       volume,         settings.grid.bounds.value_or(scene.bounds()),
+                       settings.light, visibility ? &*visibility : nullptr};
+    return render_cones(lit, view, settings.render, progress);
   });
   if (folder) folder->finish();  // not before: a run that fails or is stopped leaves no volumes
   result.mean = mean_color(result.image.image);

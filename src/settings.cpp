@@ -82,6 +82,18 @@ Settings villegas2016() {
   s.render.cone.start = 2.0f;
   s.render.cone.opacity = ConeOpacity::raw;
   s.render.cone.max_distance = 0.95f;
+  s.render.ao.normalized = false;
+  s.render.ao.skip_black = true;
+  s.render.gbuffer.cull_back_faces = true;
+  s.render.gbuffer.discard_alpha = 0.01f;
+  s.render.gbuffer.decode_textures = false;
+  s.render.gbuffer.geometric_normal = false;
+  s.render.gbuffer.normal = NormalFormat::float16;
+  s.render.gbuffer.color = ColorFormat::unorm8;
+  s.render.gbuffer.depth = DepthFormat::unorm24;
+  s.render.pixel.brdf = PixelBrdf::blinn_phong;
+  s.render.pixel.phong = {/*divide_by_pi=*/false, /*albedo_power=*/2.2f, /*specular_twice=*/true};
+  s.render.pixel.specular_cone = SpecularCone::glossiness;
   s.render.pixel.shadow = PixelShadow::cone;
   s.render.composite = {2.0f, 2.2f};
   return s;
@@ -105,8 +117,6 @@ void validate(const Settings& settings) {
           "area goes with voxelize.method=exact, running_floor8 with raster");
   require(!raster || settings.voxelize.opacity == VoxelOpacity::occupied, "voxelize.opacity",
           "coverage is known to voxelize.method=exact only");
-  require(settings.render.pixel.shadow != PixelShadow::visibility || settings.render.cone.opacity == ConeOpacity::raw,
-          "pixel.shadow", "visibility goes with cone.opacity=raw");
 }
 
 json to_json(const Settings& settings) {

@@ -222,14 +222,63 @@ std::vector<Parameter> image_parameters() {
       optional_number(
           "cone.max_distance", 0.0f, 10.0f, "end of raw cones, in sides of the grid; null: the grid's own",
           [](auto& s) -> auto& { return s.render.cone.max_distance; }),
+      number(
+          "cone.raw_unit", 0.1f, 16.0f, "voxels to a raw cone's first sample, and across its finest texels",
+          [](auto& s) -> auto& { return s.render.cone.raw_unit; }),
+      flag(
+          "cone.box_test", "raw cones gather nothing where the ray from the surface misses the scene's box",
+          [](auto& s) -> auto& { return s.render.cone.box_test; }),
       flag(
           "ao.enabled", "ambient occlusion in the channel ao.Y", [](auto& s) -> auto& { return s.render.ao.enabled; }),
       number(
           "ao.falloff", 0.0f, 1e6f, "how fast occlusion fades with distance",
           [](auto& s) -> auto& { return s.render.ao.falloff; }),
       number(
-          "ao.alpha", 0.0f, 1.0f, "added to the openness of raw cones",
-          [](auto& s) -> auto& { return s.render.ao.alpha; }),
+          "ao.alpha", 0.0f, 1.0f, "added to the openness", [](auto& s) -> auto& { return s.render.ao.alpha; }),
+      flag(
+          "ao.normalized", "occlusion is the cones' mean; else their sum with weights that make pi",
+          [](auto& s) -> auto& { return s.render.ao.normalized; }),
+      flag(
+          "ao.skip_black", "surfaces without diffuse albedo count as open",
+          [](auto& s) -> auto& { return s.render.ao.skip_black; }),
+      flag(
+          "gbuffer.cull_back_faces", "the camera sees through clockwise triangles, double-sided ones too",
+          [](auto& s) -> auto& { return s.render.gbuffer.cull_back_faces; }),
+      optional_number(
+          "gbuffer.discard_alpha", 0.0f, 1.0f,
+          "the camera sees through what has at most this alpha; null: through masks",
+          [](auto& s) -> auto& { return s.render.gbuffer.discard_alpha; }),
+      flag(
+          "gbuffer.decode_textures", "sRGB texels become linear; else blinn_phong and emission take them as they are",
+          [](auto& s) -> auto& { return s.render.gbuffer.decode_textures; }),
+      flag(
+          "gbuffer.geometric_normal", "bounds where shading normals let light in",
+          [](auto& s) -> auto& { return s.render.gbuffer.geometric_normal; }),
+      choice(
+          "gbuffer.normal", {"float32", "float16"}, "number format of normals; float16 is cut off, not rounded",
+          [](auto& s) -> auto& { return s.render.gbuffer.normal; }),
+      choice(
+          "gbuffer.color", {"float32", "unorm8"}, "of albedo, specular and emission",
+          [](auto& s) -> auto& { return s.render.gbuffer.color; }),
+      choice(
+          "gbuffer.depth", {"float32", "unorm24"}, "of depth, from which the position is computed",
+          [](auto& s) -> auto& { return s.render.gbuffer.depth; }),
+      choice(
+          "pixel.brdf", {"ggx", "blinn_phong"}, "how a pixel's surface reflects",
+          [](auto& s) -> auto& { return s.render.pixel.brdf; }),
+      flag(
+          "phong.divide_by_pi", "blinn_phong's diffuse light is albedo / pi times irradiance; else albedo times it",
+          [](auto& s) -> auto& { return s.render.pixel.phong.divide_by_pi; }),
+      number(
+          "phong.albedo_power", 0.1f, 10.0f, "exponent on blinn_phong's albedo in direct light",
+          [](auto& s) -> auto& { return s.render.pixel.phong.albedo_power; }),
+      flag(
+          "phong.specular_twice", "Ks multiplies blinn_phong's lobe, whose Fresnel term holds it already",
+          [](auto& s) -> auto& { return s.render.pixel.phong.specular_twice; }),
+      choice(
+          "pixel.specular_cone", {"ggx", "glossiness"},
+          "half-angle: fitted to the lobe, or 90 degrees (1 - glossiness)",
+          [](auto& s) -> auto& { return s.render.pixel.specular_cone; }),
       choice(
           "pixel.shadow", {"none", "rays", "cone", "visibility"}, "shadows of the image's direct light",
           [](auto& s) -> auto& { return s.render.pixel.shadow; }),

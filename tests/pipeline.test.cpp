@@ -74,8 +74,9 @@ TEST_CASE("Volumes written hold the pyramid before and after the bounces", "[pip
   CHECK(after > 1.2 * before);  // the mean albedo is about 1/2
 
   // Rendered again from the files: the same image as from memory.
+  const LitVolume volume = make_medium(volumes.pyramid(true));
   const ConeImage again =
-      render_cones(scene, caster, make_medium(volumes.pyramid(true)), view_of(scene, 16), RenderOptions{});
+      render_cones({scene, caster, volume, scene.bounds(), {}}, view_of(scene, 16), RenderOptions{});
   for (const char* channel : {"R", "diffuse.G", "direct.B"})
     for (size_t i = 0; i < again.image.pixel_count(); ++i)
       CHECK(again.image.channel(channel)[i] == Approx(with.image.image.channel(channel)[i]).epsilon(1e-5).margin(1e-7));

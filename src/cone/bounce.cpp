@@ -21,7 +21,7 @@ constexpr int usual_bounces = 6;           // until the first tells more: an alb
 constexpr size_t grain = 256;              // voxels per task, some milliseconds
 
 /// Irradiance at one voxel from the radiance in `medium`.
-glm::vec3 voxel_irradiance(const SurfaceGrid& surfaces, size_t i, const Medium& medium, const std::vector<Cone>& cones,
+glm::vec3 voxel_irradiance(const SurfaceGrid& surfaces, size_t i, const Medium& medium, const ConeSet& cones,
                            const ConeOptions& options, const glm::vec3& background) {
   const auto gather = [&](const glm::vec3& n) {
     return gather_diffuse(medium, cones, {surfaces.centroid[i], n, n}, options, AoOptions{}, background).irradiance;
@@ -65,7 +65,7 @@ int bounces_left(const Sums& sums, double gain) {
 
 /// One bounce: replaces `radiance` by direct + albedo/pi E(medium).
 Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, const Medium& medium,
-                   const std::vector<Cone>& cones, const ConeOptions& options, const glm::vec3& background,
+                   const ConeSet& cones, const ConeOptions& options, const glm::vec3& background,
                    std::vector<glm::vec3>& radiance, const BounceProgress& progress) {
   std::vector<Sums> partial((surfaces.size() + grain - 1) / grain);  // merged by index: the same bits for any threads
   std::atomic<size_t> done{0};
@@ -103,7 +103,7 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
                                 BasicPyramid<Texel>&& filtered, const BounceOptions& options, const ConeOptions& cone,
                                 const MipmapOptions& mipmap_options, const glm::vec3& background,
                                 const Progress& progress) {
-  const std::vector<Cone> cones = partition_hemisphere(options.cones);
+  const ConeSet cones = voxel_cones(options.cones);
   BasicBounceResult<Texel> result;
   result.radiance.assign(direct.begin(), direct.end());
   result.pyramid = std::move(filtered);

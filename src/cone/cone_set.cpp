@@ -94,6 +94,53 @@ glm::mat3 frame_around(const glm::vec3& n) {
 
 namespace {
 
+/// A cone along (a, b, 1) / |(a, b, 1)|.
+Cone tilted(float a, float b, float weight, float tan_half_angle) {
+  return {glm::normalize(glm::vec3(a, b, 1.0f)), weight, tan_half_angle};
+}
+
+}  // namespace
+
+// Numbers as the shaders write them, the fourth direction's slip of 0.0003 from symmetry included.
+std::vector<Cone> villegas6_cones() {
+  constexpr float tan30 = 0.57735f, top = float(pi / 4.0), side = float(3.0 * pi / 20.0);
+  return {tilted(0.0f, 0.0f, top, tan30),
+          tilted(0.0f, 0.866025f, side, tan30),
+          tilted(0.823639f, 0.267617f, side, tan30),
+          tilted(0.509037f, -0.7006629f, side, tan30),
+          tilted(-0.50937f, -0.7006629f, side, tan30),
+          tilted(-0.823639f, 0.267617f, side, tan30)};
+}
+
+std::vector<Cone> villegas4_cones() {
+  constexpr float half = 0.5f, top = float(pi / 3.0), side = float(2.0 * pi / 9.0);
+  return {tilted(0.0f, 0.0f, top, half), tilted(0.0f, 0.866025f, side, half),
+          tilted(0.754996f, -0.4330128f, side, half), tilted(-0.754996f, -0.4330128f, side, half)};
+}
+
+glm::mat3 guided_frame(const glm::vec3& n) {
+  const glm::vec3 guide = std::abs(n.y) == 1.0f ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
+  const glm::vec3 right = glm::normalize(guide - glm::dot(n, guide) * n);
+  return {right, glm::cross(right, n), n};
+}
+
+ConeSet pixel_cones(int count) {
+  if (count == published_cones) return {villegas6_cones(), guided_frame};
+  return {partition_hemisphere(count), frame_around};
+}
+
+ConeSet voxel_cones(int count) {
+  if (count == published_cones) return {villegas4_cones(), guided_frame};
+  return {partition_hemisphere(count), frame_around};
+}
+
+float published_specular_tan_half_angle(float glossiness) {
+  constexpr float least = 0.0174533f, most = float(pi);  // angles in the shader, though a tangent is meant
+  return std::clamp(std::tan(1.57079f * (1.0f - glossiness)), least, most);
+}
+
+namespace {
+
 /// Tangent of the half-angle over alpha, for one lobe. With viewer and normal along z, a half-vector at angle h
 /// reflects to l at 2h, so that n.l = cos 2h, and with D cos(h) dw_h = du for tan^2 h = alpha^2 u / (1 - u), dw_l = 4
 /// cos(h) dw_h:

@@ -30,9 +30,31 @@ Coverage coverage(const std::vector<Cone>& cones);
 /// Right-handed orthonormal frame around unit `normal`: columns tangent, bitangent, normal. Duff et al. 2017.
 glm::mat3 frame_around(const glm::vec3& normal);
 
+/// Six cones of 30 degrees half-angle that the published shaders gather with at pixels, and four of 26.6 degrees at
+/// voxels; in guided_frame. Weights sum to pi (spec sections 5 and 6).
+std::vector<Cone> villegas6_cones();
+std::vector<Cone> villegas4_cones();
+
+/// The published shaders' frame around unit `normal`: columns R, U = R x n, n, where R is +Y without its part along n,
+/// or +Z where |n.y| is exactly 1. Left-handed.
+glm::mat3 guided_frame(const glm::vec3& normal);
+
+/// Cones, and how they are turned around a normal.
+struct ConeSet {
+  std::vector<Cone> cones;
+  glm::mat3 (*frame)(const glm::vec3& normal) = frame_around;
+};
+/// @param count partition_hemisphere's, or published_cones: the six, the four
+ConeSet pixel_cones(int count);
+ConeSet voxel_cones(int count);
+
 /// Tangent of the half-angle of the cone that a GGX lobe of width alpha is gathered with, at normal incidence: a
 /// uniform cone with the same mean direction length as the lobe (Toksvig 2005 turned round). @param alpha in [0,1];
 /// below Reflectance::min_alpha as there
 float specular_tan_half_angle(float alpha);
+
+/// The published shaders' choice: tan(90 degrees x (1 - s)), at least 1 degree, at most 72. @param glossiness s in
+/// [0,1]
+float published_specular_tan_half_angle(float glossiness);
 
 }  // namespace voxref

@@ -23,17 +23,23 @@ Apex apex_over(const Medium& medium, const GatherPoint& point, const ConeOptions
 
 }  // namespace
 
-DiffuseGather gather_diffuse(const Medium& medium, const std::vector<Cone>& cones, const GatherPoint& point,
+float openness(float occlusion, const AoOptions& options) {
+  if (!options.enabled) return 1.0f;
+  const float total = options.normalized ? std::numbers::pi_v<float> : 1.0f;
+  return std::clamp(1.0f - occlusion / total + options.alpha, 0.0f, 1.0f);
+}
+
+DiffuseGather gather_diffuse(const Medium& medium, const ConeSet& cones, const GatherPoint& point,
                              const ConeOptions& options, const AoOptions& ao, const glm::vec3& background) {
   const Apex apex = apex_over(medium, point, options);
-  const glm::mat3 frame = frame_around(point.shading_normal);
+  const glm::mat3 frame = cones.frame(point.shading_normal);
   const glm::ivec3& size = medium.texels.grid.size;
   MarchOptions march_options{options.step, background, 0.0f};
   if (ao.enabled) march_options.falloff = ao.falloff / static_cast<float>(std::max({size.x, size.y, size.z}));
 
   DiffuseGather result;
   float occlusion = 0.0f;
-  for (const Cone& cone : cones) {
+  for (const Cone& cone : cones.cones) {
     const glm::vec3 direction = frame * cone.direction;
     if (glm::dot(direction, point.geometric_normal) <= 0.0f) {
       occlusion += cone.weight;
@@ -43,18 +49,16 @@ DiffuseGather gather_diffuse(const Medium& medium, const std::vector<Cone>& cone
     result.irradiance += cone.weight * seen.radiance;
     occlusion += cone.weight * seen.occlusion;
   }
-  if (ao.enabled) result.openness = std::clamp(1.0f - occlusion / std::numbers::pi_v<float>, 0.0f, 1.0f);
+  result.openness = openness(occlusion, ao);
   return result;
 }
 
-glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const glm::vec3& to_viewer, float alpha,
-                          const ConeOptions& options, const glm::vec3& background) {
+glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const glm::vec3& to_viewer,
+                          float tan_half_angle, const ConeOptions& options, const glm::vec3& background) {
   const glm::vec3 mirrored = glm::reflect(-to_viewer, point.shading_normal);
   if (glm::dot(mirrored, point.geometric_normal) <= 0.0f) return glm::vec3(0.0f);
   const Apex apex = apex_over(medium, point, options);
-  return march(medium, apex.position, mirrored, specular_tan_half_angle(alpha), apex.own,
-               {options.step, background, 0.0f})
-      .radiance;
+  return march(medium, apex.position, mirrored, tan_half_angle, apex.own, {options.step, background, 0.0f}).radiance;
 }
 
 float gather_visibility(const Medium& medium, const GatherPoint& point, const glm::vec3& target, float tan_half_angle,

@@ -20,12 +20,17 @@ struct ConeOptions {
       1.5f;  ///< voxels along the normal (times the normal's 1-norm) from the surface to a cone's apex, 0 to 8
   ConeOpacity opacity = ConeOpacity::extinction;
   std::optional<float> max_distance{};  ///< of raw cones, in the grid's longest sides; none: to the box's end
+  float raw_unit = 2.0f;  ///< of raw cones: first distance, and width of the finest texels; voxels, above 0
+  bool box_test = true;   ///< raw cones gather nothing where the ray from the surface misses the scene's box
 };
 
 struct AoOptions {
   bool enabled = false;
   float falloff = 800.0f;  ///< opacity at distance r counts 1 / (1 + falloff r / grid's longest side)
-  float alpha = 0.0f;      ///< added to the openness of raw cones
+  float alpha = 0.0f;      ///< added to the openness
+  bool normalized =
+      true;  ///< the cones' occlusion is averaged; false: summed with their weights, which are pi together
+  bool skip_black = false;  ///< surfaces without diffuse albedo count as open
 };
 
 /// Where cones start.
@@ -40,14 +45,16 @@ struct DiffuseGather {
   float openness = 1.0f;       ///< 1 - cosine-weighted mean opacity with distance falloff, in [0,1]; 1 unless asked for
 };
 
+/// @param occlusion sum over cones of weight x occlusion
+float openness(float occlusion, const AoOptions& options);
+
 /// Diffuse cones around the shading normal of a surface point (spec section 5).
-DiffuseGather gather_diffuse(const Medium& medium, const std::vector<Cone>& cones, const GatherPoint& point,
+DiffuseGather gather_diffuse(const Medium& medium, const ConeSet& cones, const GatherPoint& point,
                              const ConeOptions& options, const AoOptions& ao, const glm::vec3& background);
 
-/// One cone along the mirror direction of `to_viewer` (unit), half-angle from the GGX width alpha: mean radiance,
-/// before the lobe's directional albedo.
-glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const glm::vec3& to_viewer, float alpha,
-                          const ConeOptions& options, const glm::vec3& background);
+/// One cone along the mirror direction of `to_viewer` (unit): mean radiance, before the lobe's directional albedo.
+glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const glm::vec3& to_viewer,
+                          float tan_half_angle, const ConeOptions& options, const glm::vec3& background);
 
 /// Transmittance of a cone from a surface point to `target` (world), in [0,1].
 float gather_visibility(const Medium& medium, const GatherPoint& point, const glm::vec3& target, float tan_half_angle,

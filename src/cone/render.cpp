@@ -3,48 +3,48 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "parallel.h"
-#include "scene/surface.h"
 
 namespace voxref {
 namespace {
 
 /// What rays through the image see, summed: the layers of the image.
 struct Seen {
-  glm::vec3 color{0.0f}, direct{0.0f}, diffuse{0.0f}, specular{0.0f}, emission{0.0f}, albedo{0.0f}, normal{0.0f};
-  float ao = 0.0f, depth = 0.0f, rays = 0.0f, hits = 0.0f;
+  PixelLight light{.ao = 0.0f};
+  glm::vec3 albedo{0.0f}, normal{0.0f};
+  float depth = 0.0f, rays = 0.0f, hits = 0.0f;
 
   Seen& operator+=(const Seen& other) {
-    color += other.color, direct += other.direct, diffuse += other.diffuse, specular += other.specular;
-    emission += other.emission, albedo += other.albedo, normal += other.normal;
-    ao += other.ao, depth += other.depth, rays += other.rays, hits += other.hits;
+    light.color += other.light.color, light.direct += other.light.direct, light.diffuse += other.light.diffuse;
+    light.specular += other.light.specular, light.emission += other.light.emission, light.ao += other.light.ao;
+    albedo += other.albedo, normal += other.normal;
+    depth += other.depth, rays += other.rays, hits += other.hits;
     return *this;
   }
   /// Light is the mean over all rays; albedo, normal and depth are those of what was hit, 0 where nothing was.
   Seen mean() const {
     const float all = 1.0f / rays, hit = hits > 0.0f ? 1.0f / hits : 0.0f;
-    return {color * all,  direct * all, diffuse * all, specular * all, emission * all, albedo * hit,
-            normal * hit, ao * all,     depth * hit,   1.0f,           hits * all};
+    return {{light.color * all, light.direct * all, light.diffuse * all, light.specular * all, light.emission * all,
+             light.ao * all},
+            albedo * hit,
+            normal * hit,
+            depth * hit,
+            1.0f,
+            hits * all};
   }
 };
 
 /// Everything that pixels share.
 class Renderer {
  public:
-  Renderer(const Scene& scene, const Caster& caster, const Medium& medium, const View& view,
-           const RenderOptions& options)
-      : scene_(scene),
-        surfaces_(scene),
-        caster_(caster),
-        medium_(medium),
-        view_(view),
-        options_(options),
-        rays_(view),
-        cones_(partition_hemisphere(options.cone.diffuse)) {}
+  Renderer(const LitScene& lit, const View& view, const RenderOptions& options)
+      : view_(view),
+        gbuffer_(lit.scene, lit.caster, view, options.gbuffer),
+        shade_(lit, options, view.background),
+        phong_(options.pixel.brdf == PixelBrdf::blinn_phong) {}
 
   /// Mean over the pixel's sub-positions: its centre, or a regular 4 x 4 grid (as finely as cone tracing, which is
   /// smooth over a voxel, can tell; edges keep 16 shades).
@@ -61,94 +61,27 @@ class Renderer {
 
  private:
   Seen position(const glm::vec2& where) const {
-    const Ray ray = rays_(where);
-    const Hit hit = caster_.closest(ray);
     Seen seen;
-    seen.rays = seen.ao = 1.0f;
-    if (!hit) {
-      seen.color = seen.emission = view_.background;
+    seen.rays = seen.light.ao = 1.0f;
+    const std::optional<GBufferPoint> point = gbuffer_(where);
+    if (!point) {
+      seen.light.color = seen.light.emission = view_.background;
       return seen;
     }
     seen.hits = 1.0f;
-    const glm::vec3 to_viewer = -glm::normalize(ray.direction);
-    const SurfacePoint point = surfaces_.point(hit, to_viewer);
-    const float n_v = std::clamp(glm::dot(point.shading_normal, to_viewer), 0.0f, 1.0f);
-    seen.normal = point.shading_normal;
-    seen.depth = glm::dot(point.position - rays_.eye(), rays_.forward());
-    seen.emission = point.emission;
-    const Reflectance& reflectance = point.reflectance;
-    seen.albedo = reflectance.diffuse * (1.0f - reflectance.layer_f0) + reflectance.specular_f0;  // as the path tracer
-    seen.direct = direct(point, to_viewer);
-    indirect(point, to_viewer, n_v, seen);
-    seen.color = (seen.direct + seen.diffuse + seen.specular) * seen.ao + seen.emission;
+    seen.light = shade_(*point);
+    seen.normal = point->normal;
+    seen.depth = point->depth;
+    const Reflectance& reflectance = point->reflectance;  // as the path tracer
+    seen.albedo =
+        phong_ ? point->phong.diffuse : reflectance.diffuse * (1.0f - reflectance.layer_f0) + reflectance.specular_f0;
     return seen;
   }
 
-  glm::vec3 direct(const SurfacePoint& point, const glm::vec3& to_viewer) const {
-    glm::vec3 sum(0.0f);
-    if (point.reflectance.black()) return sum;
-    for (const Light& light : scene_.lights) {
-      const Illumination lit = illuminate(light, point.position);
-      const float cosine = glm::dot(point.shading_normal, lit.to_light);
-      if (lit.irradiance == glm::vec3(0.0f) || cosine <= 0.0f || glm::dot(point.geometric_normal, lit.to_light) <= 0.0f)
-        continue;
-      const glm::vec3 reflected =
-          evaluate(point.reflectance, point.shading_normal, to_viewer, lit.to_light) * cosine * lit.irradiance;
-      if (reflected != glm::vec3(0.0f)) sum += reflected * visibility(point, light, lit);
-    }
-    return sum;
-  }
-
-  float visibility(const SurfacePoint& point, const Light& light, const Illumination& lit) const {
-    const bool directional = light.type == LightType::directional;
-    switch (options_.pixel.shadow) {
-      case PixelShadow::none:
-      case PixelShadow::visibility:  // read with raw cones only, see validate(Settings)
-        return 1.0f;
-      case PixelShadow::rays: {
-        const Ray away = caster_.leave(point.position, point.geometric_normal, lit.to_light);
-        return (directional ? !caster_.occluded(away) : caster_.visible(away.origin, light.position)) ? 1.0f : 0.0f;
-      }
-      case PixelShadow::cone: {
-        const Grid& grid = medium_.texels.grid;
-        const glm::vec3 target = directional  // a point outside the grid
-                                     ? point.position + glm::length(grid.max() - grid.min) * lit.to_light
-                                     : light.position;
-        return gather_visibility(medium_, gather_point(point), target, options_.pixel.shadow_cone_aperture,
-                                 options_.cone);
-      }
-    }
-    return 1.0f;
-  }
-
-  /// Light gathered by cones, after the BRDF. What the specular lobe reflects is taken off the base (diffuse_albedo),
-  /// so that both together send no more than arrives.
-  void indirect(const SurfacePoint& point, const glm::vec3& to_viewer, float n_v, Seen& seen) const {
-    const Reflectance& reflectance = point.reflectance;
-    const GatherPoint from = gather_point(point);
-    if (reflectance.has_diffuse() || options_.ao.enabled) {
-      const DiffuseGather gathered =
-          gather_diffuse(medium_, cones_, from, options_.cone, options_.ao, view_.background);
-      seen.diffuse = diffuse_albedo(reflectance, n_v) * gathered.irradiance / std::numbers::pi_v<float>;
-      seen.ao = gathered.openness;
-    }
-    if (reflectance.has_specular())
-      seen.specular = specular_albedo(reflectance, n_v) *
-                      gather_specular(medium_, from, to_viewer, reflectance.alpha, options_.cone, view_.background);
-  }
-
-  static GatherPoint gather_point(const SurfacePoint& point) {
-    return {point.position, point.geometric_normal, point.shading_normal};
-  }
-
-  const Scene& scene_;
-  Surfaces surfaces_;
-  const Caster& caster_;
-  const Medium& medium_;
   const View& view_;
-  const RenderOptions& options_;
-  RayGenerator rays_;
-  std::vector<Cone> cones_;
+  GBuffer gbuffer_;
+  PixelShader shade_;
+  bool phong_;
 };
 
 /// The planes that pixels are written to.
@@ -169,10 +102,11 @@ class Layers {
     const auto set3 = [pixel](const std::array<std::span<float>, 3>& planes, const glm::vec3& value) {
       for (int c = 0; c < 3; ++c) planes[size_t(c)][pixel] = value[c];
     };
-    set3(color_, seen.color), set3(direct_, seen.direct), set3(diffuse_, seen.diffuse);
-    set3(specular_, seen.specular), set3(emission_, seen.emission), set3(albedo_, seen.albedo);
+    const PixelLight& light = seen.light;
+    set3(color_, light.color), set3(direct_, light.direct), set3(diffuse_, light.diffuse);
+    set3(specular_, light.specular), set3(emission_, light.emission), set3(albedo_, seen.albedo);
     set3(normal_, seen.normal);
-    ao_[pixel] = seen.ao, depth_[pixel] = seen.depth;
+    ao_[pixel] = light.ao, depth_[pixel] = seen.depth;
   }
 
  private:
@@ -192,11 +126,10 @@ void count_nonfinite(ConeImage& result) {
 
 }  // namespace
 
-ConeImage render_cones(const Scene& scene, const Caster& caster, const Medium& medium, const View& view,
-                       const RenderOptions& options, const Progress& progress) {
+ConeImage render_cones(const LitScene& lit, const View& view, const RenderOptions& options, const Progress& progress) {
   ConeImage result{Image(view.width, view.height), 0, {}};
   const Layers layers(result.image);
-  const Renderer renderer(scene, caster, medium, view, options);
+  const Renderer renderer(lit, view, options);
 
   constexpr int tile = 16;  // pixels: neighbours march through the same bricks
   const int tiles_x = (view.width + tile - 1) / tile, tiles_y = (view.height + tile - 1) / tile;

@@ -25,6 +25,7 @@ Camera look_at(const glm::vec3& eye, const glm::vec3& target, const glm::vec3& u
   const glm::vec3 right = glm::normalize(side);
   Camera camera;
   camera.yfov = yfov;
+  camera.znear = 1e-3f * glm::length(view);
   camera.world_from_camera = glm::mat4(glm::vec4(right, 0.0f), glm::vec4(glm::cross(back, right), 0.0f),
                                        glm::vec4(back, 0.0f), glm::vec4(eye, 1.0f));
   return camera;

@@ -3,6 +3,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <string>
 
 #include "scene/ray.h"
@@ -19,9 +20,13 @@ struct Camera {
   float yfov = 0.8f;           ///< radians, perspective
   float ymag = 1.0f;           ///< half height in world units, orthographic
   float aspect = 4.0f / 3.0f;  ///< width / height, used where no image size is given
+  /// Distances along the view axis, world units; only an image whose depth is stored in bits is cut off at them. None
+  /// where the file gives no far plane.
+  float znear = 0.01f, zfar = std::numeric_limits<float>::infinity();
 };
 
-/// A camera at `eye` that looks at `target`. @throws Error when they coincide or `up` is parallel to the view
+/// A camera at `eye` that looks at `target`, its near plane at a thousandth of the way. @throws Error when they
+/// coincide or `up` is parallel to the view
 Camera look_at(const glm::vec3& eye, const glm::vec3& target, const glm::vec3& up, float yfov);
 
 /// A camera that frames the whole scene from the front (+Z), slightly above; also for a scene without triangles.

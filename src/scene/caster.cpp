@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <vector>
 
 #include "error.h"
@@ -21,21 +22,36 @@ namespace voxref {
 
 namespace {
 
-/// Opaque and masked triangles are two Embree geometries, so that the filter that looks holes up never runs on opaque
-/// ones.
+/// Triangles that are there wherever a ray meets them and others are two Embree geometries, so that the filter never
+/// runs on the former.
 struct Geometry {
   const Scene* scene = nullptr;
+  CasterOptions options;
   std::vector<uint32_t> triangles;  ///< scene index of each of its triangles, in order
 };
 
-/// Rejects hits in the holes of a mask; Embree then goes on along the ray.
-void reject_holes(const RTCFilterFunctionNArguments* args) {
+bool is_front(const Scene& scene, uint32_t triangle, const glm::vec3& direction) {
+  const glm::uvec3& corners = scene.triangles[triangle];
+  const glm::vec3& a = scene.positions[corners.x];
+  return glm::dot(glm::cross(scene.positions[corners.y] - a, scene.positions[corners.z] - a), direction) < 0.0f;
+}
+
+bool is_there(const Geometry& geometry, uint32_t triangle, const glm::vec2& uv, const glm::vec3& direction) {
+  if (geometry.options.cull_back_faces && !is_front(*geometry.scene, triangle, direction)) return false;
+  return geometry.options.discard_alpha ? alpha(*geometry.scene, triangle, uv) > *geometry.options.discard_alpha
+                                        : covered(*geometry.scene, triangle, uv);
+}
+
+/// Rejects hits of what is not there, such as the holes of a mask; Embree then goes on along the ray.
+void reject_absent(const RTCFilterFunctionNArguments* args) {
   const Geometry& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
   for (unsigned int i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const uint32_t triangle = geometry.triangles[RTCHitN_primID(args->hit, args->N, i)];
     const glm::vec2 uv(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
-    if (!covered(*geometry.scene, triangle, uv)) args->valid[i] = 0;
+    const glm::vec3 direction(RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
+                              RTCRayN_dir_z(args->ray, args->N, i));
+    if (!is_there(geometry, triangle, uv, direction)) args->valid[i] = 0;
   }
 }
 
@@ -53,11 +69,11 @@ constexpr float offset_per_coordinate = 32.0f / 8388608.0f;
 struct Caster::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  Geometry opaque, masked;
+  Geometry opaque, filtered;
   std::atomic<ssize_t> bytes = 0;
   float offset = 0.0f;
 
-  explicit Impl(const Scene& source) {
+  Impl(const Scene& source, const CasterOptions& options) {
     device = rtcNewDevice(nullptr);
     if (!device) throw Error("Embree", "cannot start, error " + std::to_string(rtcGetDeviceError(nullptr)));
     rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
@@ -65,13 +81,15 @@ struct Caster::Impl {
     // Robust: without it rays slip through shared edges, and a closed furnace leaks.
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    opaque.scene = masked.scene = &source;
+    opaque.scene = filtered.scene = &source;
+    filtered.options = options;
     for (uint32_t i = 0; i < source.triangles.size(); ++i) {
-      const bool mask = source.materials[source.triangle_materials[i]].alpha_mode == AlphaMode::mask;
-      (mask ? masked : opaque).triangles.push_back(i);
+      const bool may_be_absent = options.cull_back_faces || options.discard_alpha ||
+                                 source.materials[source.triangle_materials[i]].alpha_mode == AlphaMode::mask;
+      (may_be_absent ? filtered : opaque).triangles.push_back(i);
     }
     attach(source, opaque, false);
-    attach(source, masked, true);
+    attach(source, filtered, true);
     rtcCommitScene(scene);
     if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
       release();
@@ -96,7 +114,7 @@ struct Caster::Impl {
   }
 
   /// Geometry ids follow the order of attachment; an empty geometry is attached too, so that ids stay 0 and 1.
-  void attach(const Scene& source, Geometry& geometry, bool filtered) {
+  void attach(const Scene& source, Geometry& geometry, bool with_filter) {
     RTCGeometry handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!geometry.triangles.empty()) {
       void* vertices = rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
@@ -108,10 +126,10 @@ struct Caster::Impl {
       for (size_t i = 0; i < geometry.triangles.size(); ++i)
         static_cast<glm::uvec3*>(indices)[i] = source.triangles[geometry.triangles[i]];
     }
-    if (filtered) {
+    if (with_filter) {
       rtcSetGeometryUserData(handle, &geometry);
-      rtcSetGeometryIntersectFilterFunction(handle, reject_holes);
-      rtcSetGeometryOccludedFilterFunction(handle, reject_holes);
+      rtcSetGeometryIntersectFilterFunction(handle, reject_absent);
+      rtcSetGeometryOccludedFilterFunction(handle, reject_absent);
     }
     rtcCommitGeometry(handle);
     rtcAttachGeometry(scene, handle);
@@ -154,7 +172,7 @@ void occlude(RTCScene scene, RTCRay& ray) {
 
 }  // namespace
 
-Caster::Caster(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+Caster::Caster(const Scene& scene, const CasterOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
 Caster::~Caster() = default;
 Caster::Caster(Caster&&) noexcept = default;
 
@@ -165,7 +183,7 @@ Hit Caster::closest(const Ray& ray) const {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   intersect(impl_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const Geometry& geometry = query.hit.geomID == 0 ? impl_->opaque : impl_->masked;
+  const Geometry& geometry = query.hit.geomID == 0 ? impl_->opaque : impl_->filtered;
   return {geometry.triangles[query.hit.primID], {query.hit.u, query.hit.v}, query.ray.tfar};
 }
 

@@ -1,16 +1,23 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "scene/ray.h"
 #include "scene/scene.h"
 
 namespace voxref {
 
+/// Which surfaces rays hit.
+struct CasterOptions {
+  bool cull_back_faces = false;        ///< rays pass clockwise triangles, double-sided ones too
+  std::optional<float> discard_alpha;  ///< rays pass where alpha is at most this, whatever the material says of masks
+};
+
 /// Finds what rays hit, over a scene's triangles; holes of alpha-masked materials let them through. Immutable after
 /// construction, so any number of threads may cast at once. Keeps a reference to the scene.
 class Caster {
  public:
-  explicit Caster(const Scene& scene);
+  explicit Caster(const Scene& scene, const CasterOptions& options = {});
   ~Caster();
   Caster(Caster&&) noexcept;
   Caster(const Caster&) = delete;

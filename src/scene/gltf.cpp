@@ -67,11 +67,15 @@ Camera read_camera(const GltfValue& value) {
     const GltfValue lens = value.at("perspective");
     camera.yfov = static_cast<float>(lens.at("yfov").number(Range{Range::positive().low, largest_yfov}));
     camera.aspect = lens.number("aspectRatio", camera.aspect, Range::positive());
+    camera.znear = lens.number("znear", camera.znear, Range::positive());
+    camera.zfar = lens.number("zfar", camera.zfar, Range::positive());
   } else if (type == "orthographic") {
     const GltfValue lens = value.at("orthographic");
     camera.orthographic = true;
     camera.ymag = static_cast<float>(lens.at("ymag").number(Range::positive()));
     camera.aspect = static_cast<float>(lens.at("xmag").number(Range::positive())) / camera.ymag;
+    camera.znear = lens.number("znear", camera.znear, Range::from(0.0));
+    camera.zfar = lens.number("zfar", camera.zfar, Range::positive());
   } else {
     value.at("type").fail("must be perspective or orthographic");
   }

@@ -5,6 +5,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "scene/texture_reader.h"
+
 namespace voxref {
 
 namespace {
@@ -15,31 +17,6 @@ constexpr float least_view_cosine = 1e-3f;
 
 /// F0 of a dielectric of refractive index 1.5, as glTF fixes it.
 constexpr float dielectric_f0 = 0.04f;
-
-/// Attribute at barycentric coordinates.
-template <class T>
-T interpolate(const std::vector<T>& attribute, const glm::uvec3& triangle, const glm::vec2& uv) {
-  return (1.0f - uv.x - uv.y) * attribute[triangle.x] + uv.x * attribute[triangle.y] + uv.y * attribute[triangle.z];
-}
-
-/// Looks a binding up at a point of a triangle, remembering the two texture coordinate sets while it lives.
-class TextureReader {
- public:
-  TextureReader(const Scene& scene, const glm::uvec3& triangle, const glm::vec2& barycentric)
-      : scene_(scene), triangle_(triangle), barycentric_(barycentric) {}
-
-  /// White where nothing is bound.
-  glm::vec4 operator()(const TextureBinding& binding) const {
-    if (!binding || scene_.uv[binding.uv_set].empty()) return glm::vec4(1.0f);
-    return lookup(scene_.images[binding.image], binding,
-                  interpolate(scene_.uv[binding.uv_set], triangle_, barycentric_));
-  }
-
- private:
-  const Scene& scene_;
-  const glm::uvec3& triangle_;
-  const glm::vec2& barycentric_;
-};
 
 float clamped_alpha(float perceptual_roughness) {
   return std::clamp(perceptual_roughness * perceptual_roughness, Reflectance::min_alpha, 1.0f);
@@ -146,10 +123,15 @@ MaterialPoint Materials::point(uint32_t triangle, const glm::vec2& uv) const {
   return material_point(scene_, scene_.materials[material], scene_.triangles[triangle], uv);
 }
 
-bool covered(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
-  const Material& m = scene.materials[scene.triangle_materials[triangle]];
+float alpha(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
   const glm::uvec3& corners = scene.triangles[triangle];
-  return !hole(m, base_color(scene, m, corners, uv, TextureReader(scene, corners, uv)).a);
+  return base_color(scene, scene.materials[scene.triangle_materials[triangle]], corners, uv,
+                    TextureReader(scene, corners, uv))
+      .a;
+}
+
+bool covered(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
+  return !hole(scene.materials[scene.triangle_materials[triangle]], alpha(scene, triangle, uv));
 }
 
 Surfaces::Surfaces(const Scene& scene) : scene_(scene), materials_(scene) {
@@ -189,7 +171,8 @@ SurfacePoint Surfaces::point(const Hit& hit, const glm::vec3& to_viewer) const {
 
   const float side = point.front ? 1.0f : -1.0f;
   const bool varies = triangle.shading_normal == glm::vec3(0.0f);
-  glm::vec3 shading = side * (varies ? shading_normal(hit, triangle) : triangle.shading_normal);
+  point.stored_normal = varies ? shading_normal(hit, triangle) : triangle.shading_normal;
+  glm::vec3 shading = side * point.stored_normal;
   const float view_cosine = glm::dot(shading, to_viewer);
   if (view_cosine < least_view_cosine)
     shading = glm::normalize(shading + (least_view_cosine - view_cosine) * to_viewer);

@@ -15,6 +15,7 @@ struct SurfacePoint {
   glm::vec3 position{0.0f};          ///< world
   glm::vec3 geometric_normal{0.0f};  ///< unit, towards the viewer
   glm::vec3 shading_normal{0.0f};    ///< unit, interpolated and mapped, bent just far enough to face the viewer
+  glm::vec3 stored_normal{0.0f};     ///< unit, interpolated and mapped, as the file has it: on the front, not bent
   glm::vec3 emission{0.0f};          ///< radiance towards the viewer
   Reflectance reflectance;
   uint32_t triangle = 0, material = 0;
@@ -72,6 +73,8 @@ class Surfaces {
   std::vector<Triangle> triangles_;
 };
 
+/// Alpha of the base colour, whatever the material's alpha mode makes of it.
+float alpha(const Scene& scene, uint32_t triangle, const glm::vec2& uv);
 /// Coverage of a mask alone: what the caster asks for. False in a hole.
 bool covered(const Scene& scene, uint32_t triangle, const glm::vec2& uv);
 

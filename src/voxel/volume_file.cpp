@@ -124,6 +124,13 @@ std::vector<glm::vec3> VolumeFolder::radiance(const SurfaceGrid& surfaces, bool 
   return radiance;
 }
 
+std::vector<float> VolumeFolder::visibility(const SurfaceGrid& surfaces) const {
+  std::vector<float> visibility(surfaces.size());
+  read_sparse(entry("visibility"), surfaces, 1,
+              [&](size_t i, std::span<const float> texel) { visibility[i] = texel[0]; });
+  return visibility;
+}
+
 template <class Texel>
 BrickVolume<Texel> VolumeFolder::base(bool bounced) const {
   const VolumeEntry& volume = entry(radiance_name(bounced));

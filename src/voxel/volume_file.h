@@ -26,6 +26,8 @@ class VolumeFolder {
   SurfaceGrid surfaces() const;
   /// radiance or radiance_bounce at the surfaces' voxels, not premultiplied.
   std::vector<glm::vec3> radiance(const SurfaceGrid& surfaces, bool bounced) const;
+  /// Mean visibility of the lights at the surfaces' voxels.
+  std::vector<float> visibility(const SurfaceGrid& surfaces) const;
   /// radiance or radiance_bounce, premultiplied, whichever way it is stored.
   template <class Texel = glm::vec4>
   BrickVolume<Texel> base(bool bounced) const;

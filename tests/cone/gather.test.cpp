@@ -24,7 +24,7 @@ TEST_CASE("A closed uniform box returns at least 0.98 of its radiance, for 6, 32
   for (const glm::ivec3 size : {glm::ivec3(32, 32, 32), glm::ivec3(64, 64, 64), glm::ivec3(67, 45, 38)}) {
     const Medium medium = lit_box(size);
     for (const int count : {6, 32, 128}) {
-      const std::vector<Cone> cones = partition_hemisphere(count);
+      const ConeSet cones = pixel_cones(count);
       float sum = 0.0f, positions = 0.0f;
       for (int axis = 0; axis < 3; ++axis)
         for (const float sign : {-1.0f, 1.0f})
@@ -55,9 +55,9 @@ TEST_CASE("A constant background over an unoccluded plane gives pi L", "[gather]
   const glm::vec3 background(1.0f, 2.0f, 4.0f);
   for (const int count : {1, 4, 6, 16, 64}) {
     ConeOptions options;
-    const glm::vec3 e = gather_diffuse(medium, partition_hemisphere(count), point_at({16.0f, 2.5f, 16.0f}, {0, 1, 0}),
-                                       options, {}, background)
-                            .irradiance;
+    const glm::vec3 e =
+        gather_diffuse(medium, pixel_cones(count), point_at({16.0f, 2.5f, 16.0f}, {0, 1, 0}), options, {}, background)
+            .irradiance;
     CAPTURE(count);
     // The plane is black: what cones see of their own plane would be missing. Weights are summed in float.
     for (int c = 0; c < 3; ++c) CHECK(e[c] == Approx(pi * background[c]).epsilon(1e-5));
@@ -73,7 +73,7 @@ TEST_CASE("The result hardly depends on the step: 0.5, 0.25 and 0.1 agree within
     return v.x == 1 ? glm::vec4(0.9f, 0.1f, 0.1f, 1.0f) : glm::vec4(float(v.y) / 64.0f, 0.7f, 0.7f, 1.0f);
   });
   for (const int count : {6, 32}) {
-    const std::vector<Cone> cones = partition_hemisphere(count);
+    const ConeSet cones = pixel_cones(count);
     for (const glm::vec3 position :
          {glm::vec3(20.0f, 1.5f, 30.0f), glm::vec3(50.0f, 1.5f, 12.0f), glm::vec3(27.5f, 1.5f, 50.0f)}) {
       const auto irradiance = [&](float step) {
@@ -97,8 +97,7 @@ TEST_CASE("Twice the radiance gives twice the irradiance, to the bit", "[gather]
     const Medium medium = fill_medium(size, [&](const glm::ivec3& v) {
       return on_box(v, size, 1) ? glm::vec4(scale * glm::vec3(0.3f, 0.1f * float(v.y), 0.7f), 1.0f) : glm::vec4(0.0f);
     });
-    return gather_diffuse(medium, partition_hemisphere(16), point_at({10.0f, 1.5f, 8.0f}, {0, 1, 0}), {}, {},
-                          glm::vec3(0.0f))
+    return gather_diffuse(medium, pixel_cones(16), point_at({10.0f, 1.5f, 8.0f}, {0, 1, 0}), {}, {}, glm::vec3(0.0f))
         .irradiance;
   };
   CHECK(irradiance(2.0f) == 2.0f * irradiance(1.0f));
@@ -112,26 +111,29 @@ TEST_CASE("A specular cone sees what lies in the mirror direction", "[gather]") 
   });
   const GatherPoint floor = point_at({32.0f, 1.5f, 32.0f}, {0, 1, 0});
   const glm::vec3 from_left = glm::normalize(glm::vec3(-1.0f, 0.5f, 0.0f)), from_right(-from_left.x, from_left.y, 0.0f);
-  const glm::vec3 red = gather_specular(medium, floor, from_left, 0.01f, {}, glm::vec3(0.0f));
+  const glm::vec3 red = gather_specular(medium, floor, from_left, specular_tan_half_angle(0.01f), {}, glm::vec3(0.0f));
   CHECK(red.r > 0.99f);
   CHECK(red.b < 0.01f);
-  CHECK(gather_specular(medium, floor, from_right, 0.01f, {}, glm::vec3(0.0f)).b > 0.99f);
+  CHECK(gather_specular(medium, floor, from_right, specular_tan_half_angle(0.01f), {}, glm::vec3(0.0f)).b > 0.99f);
   // Mirrored to just below the ceiling, a wider lobe mixes both.
   const glm::vec3 from_below = glm::normalize(glm::vec3(-1.0f, 1.86f, 0.0f));
-  const glm::vec3 sharp = gather_specular(medium, floor, from_below, 0.01f, {}, glm::vec3(0.0f));
-  const glm::vec3 rough = gather_specular(medium, floor, from_below, 0.8f, {}, glm::vec3(0.0f));
+  const glm::vec3 sharp =
+      gather_specular(medium, floor, from_below, specular_tan_half_angle(0.01f), {}, glm::vec3(0.0f));
+  const glm::vec3 rough =
+      gather_specular(medium, floor, from_below, specular_tan_half_angle(0.8f), {}, glm::vec3(0.0f));
   CHECK(sharp.b < 0.03f);  // it passes the corner within two voxels
   CHECK(rough.r > 0.1f);
   CHECK(rough.b > 0.01f);
   // A mirror direction behind the geometric surface carries nothing.
   const GatherPoint bent{floor.position, {0, 1, 0}, glm::normalize(glm::vec3(1.0f, 0.2f, 0.0f))};
-  CHECK(gather_specular(medium, bent, {0, 1, 0}, 0.01f, {}, glm::vec3(1.0f)) == glm::vec3(0.0f));
+  CHECK(gather_specular(medium, bent, {0, 1, 0}, specular_tan_half_angle(0.01f), {}, glm::vec3(1.0f)) ==
+        glm::vec3(0.0f));
 }
 
 TEST_CASE("Openness is 1 in the open, 0 in a closed box without falloff, and between with it", "[gather]") {
   AoOptions ao;
   ao.enabled = true;
-  const std::vector<Cone> cones = partition_hemisphere(16);
+  const ConeSet cones = pixel_cones(16);
   const Medium empty = fill_medium({32, 32, 32}, [](const glm::ivec3&) { return glm::vec4(0.0f); });
   const GatherPoint floor = point_at({16.0f, 1.5f, 16.0f}, {0, 1, 0});
   CHECK(gather_diffuse(empty, cones, floor, {}, ao, glm::vec3(0.0f)).openness == 1.0f);

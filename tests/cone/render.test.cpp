@@ -26,7 +26,8 @@ Medium medium_of(const Scene& scene, const Caster& caster, int resolution,
 
 ConeImage render(const Scene& scene, const View& view, const RenderOptions& options = {}, int resolution = 32) {
   const Caster caster(scene);
-  return render_cones(scene, caster, medium_of(scene, caster, resolution, view.background), view, options);
+  const LitVolume volume = medium_of(scene, caster, resolution, view.background);
+  return render_cones({scene, caster, volume, scene.bounds(), {}}, view, options);
 }
 
 Scene floor_and_lamp(const Material& material) {

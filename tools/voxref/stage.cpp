@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "cone/medium.h"
+#include "cone/render.h"
 #include "image/image_file.h"
 #include "inputs.h"
 #include "json.h"
@@ -85,15 +85,25 @@ void run_bounce(const Input& input) {
   writer.finish();
 }
 
+template <class Texel>
 void run_gather(const Input& input) {
   const Scene scene = stage_scene(input);
   const View view = make_view(input.options.view, scene, cone_bytes_per_pixel);
   const Caster caster(scene);
   const bool bounced = input.volumes.has("radiance_bounce");
-  const Medium medium = make_medium(input.volumes.pyramid(bounced));
-  ConeImage result = render_cones(scene, caster, medium, view, input.settings.render, input.terminal.progress());
+  const Settings& settings = input.settings;
+  const LitVolume volume = lit_volume(input.volumes.pyramid<Texel>(bounced), settings.render.cone.opacity);
+  std::optional<LightVisibility> visibility;
+  if (settings.render.pixel.shadow == PixelShadow::visibility) {
+    const SurfaceGrid surfaces = input.volumes.surfaces();
+    visibility.emplace(surfaces, input.volumes.visibility(surfaces));
+  }
+  const LitScene lit{scene,          caster,
+                     volume,         settings.grid.bounds.value_or(scene.bounds()),
+                     settings.light, visibility ? &*visibility : nullptr};
+  ConeImage result = render_cones(lit, view, settings.render, input.terminal.progress());
   nlohmann::json origin = provenance(scene, view);
-  origin["settings"] = to_json(input.settings);
+  origin["settings"] = to_json(settings);
   origin["volumes"] = input.options.from;
   attach(result.image, origin);
   std::filesystem::create_directories(input.output);
@@ -112,7 +122,7 @@ int run_stage(const Options& options) {
   if (options.stage == "shade") run_shade(input);
   if (options.stage == "mipmap") bytes ? run_mipmap<Rgba8>(input) : run_mipmap<glm::vec4>(input);
   if (options.stage == "bounce") bytes ? run_bounce<Rgba8>(input) : run_bounce<glm::vec4>(input);
-  if (options.stage == "gather") run_gather(input);
+  if (options.stage == "gather") bytes ? run_gather<Rgba8>(input) : run_gather<glm::vec4>(input);
   terminal.say("written   " + options.output);
   terminal.result({{"stage", options.stage}, {"from", options.from}, {"output", options.output}});
   return exit_done;

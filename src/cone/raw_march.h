@@ -1,0 +1,55 @@
+#pragma once
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "scene/scene.h"
+#include "voxel/mipmap.h"
+
+namespace voxref {
+
+/// A sample of a cone whose texels grow with it.
+struct ConeStep {
+  float distance = 0.0f;   ///< from the march's start, world units
+  int level = 0;           ///< finer of the two levels that are mixed; 0 is the base, k is Pyramid::levels[k - 1]
+  float fraction = 0.0f;   ///< share of the coarser one, in [0,1)
+  float occlusion = 1.0f;  ///< what opacity here counts towards ambient occlusion, in (0,1]
+};
+
+/// What decides where a cone is sampled; lengths in world units.
+struct ConeStepping {
+  float unit = 1.0f;  ///< first distance; a diameter of 1 unit reads the base, of 2^k units level k
+  float step = 0.5f;  ///< in diameters
+  float end = 0.0f;   ///< no sample lies beyond
+  int top = 0;        ///< coarsest level
+  float falloff = 0;  ///< opacity in a cone of radius r counts 1 / (1 + falloff r)
+};
+
+/// The samples of all cones of one aperture: they do not depend on where a cone starts. Diameter d = 2 s tan, level
+/// log2(d / unit), s grows by step x d (spec section 5, villegas2016). @param tan_half_angle above 0
+std::vector<ConeStep> cone_steps(float tan_half_angle, const ConeStepping& stepping);
+
+struct RawCone {
+  glm::vec3 radiance{0.0f};  ///< premultiplied sum, as stored
+  float opacity = 0.0f;
+  float occlusion = 0.0f;  ///< opacity weighted by ConeStep::occlusion
+};
+
+/// Marches volumes as the published shaders do: opacity is interpolated as it is stored, a sample's opacity does not
+/// depend on the step's length, and what lies outside the volumes is their edge. At each sample C += (1 - a) c and
+/// a += (1 - a) alpha until a >= 1. Faces count with the direction's squared components.
+/// @param start world; distances count from it @param direction unit
+template <class Texel>
+RawCone march_raw(const BasicPyramid<Texel>& pyramid, const glm::vec3& start, const glm::vec3& direction,
+                  const std::vector<ConeStep>& steps);
+
+/// What a raw shadow cone lets through, in [0,1]: v += (1 - v) gain alpha until v >= 1, then 1 - v.
+/// @param end samples beyond this distance are not taken, world units
+/// @param gain infinity: any alpha above 1e-30 is black
+template <class Texel>
+float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const glm::vec3& start, const glm::vec3& direction,
+                       const std::vector<ConeStep>& steps, float end, float gain);
+
+/// Whether a ray meets a box: the slab test of the published shaders, by which a ray that only grazes it does not.
+bool meets(const Bounds& box, const glm::vec3& origin, const glm::vec3& direction);
+
+}  // namespace voxref

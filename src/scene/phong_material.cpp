@@ -1,0 +1,39 @@
+#include "scene/phong_material.h"
+
+#include <glm/common.hpp>
+
+#include "scene/texture_reader.h"
+
+namespace voxref {
+
+PhongMaterial phong_material(const Scene& scene, uint32_t triangle, const glm::vec2& uv, bool decode_textures) {
+  const Material& m = scene.materials[scene.triangle_materials[triangle]];
+  const glm::uvec3& corners = scene.triangles[triangle];
+  const TextureReader texture(scene, corners, uv);
+  const auto color = [&](TextureBinding binding) {
+    binding.srgb = binding.srgb && decode_textures;
+    return texture(binding);
+  };
+
+  glm::vec3 base = glm::vec3(m.base_color * color(m.base_color_texture));
+  if (!scene.colors.empty()) base *= glm::vec3(interpolate(scene.colors, corners, uv));
+  PhongMaterial phong;
+  phong.emission = m.emission * glm::vec3(color(m.emission_texture));
+  const glm::vec4 specular_color = color(m.specular_color_texture);
+  if (m.workflow == Workflow::specular_glossiness) {
+    phong.diffuse = base;
+    phong.specular = m.specular_color * glm::vec3(specular_color);
+    phong.glossiness = m.glossiness * specular_color.a;
+    return phong;
+  }
+  constexpr float dielectric_f0 = 0.04f;  // refractive index 1.5, as glTF fixes it
+  const glm::vec4 metal_rough = texture(m.metallic_roughness_texture);
+  const float metallic = m.metallic * metal_rough.b, strength = m.specular * texture(m.specular_texture).a;
+  const glm::vec3 f0 = glm::min(dielectric_f0 * m.specular_color * glm::vec3(specular_color), glm::vec3(1.0f));
+  phong.diffuse = (1.0f - metallic) * base;
+  phong.specular = glm::mix(strength * f0, base, metallic);
+  phong.glossiness = glm::clamp(1.0f - m.roughness * metal_rough.g, 0.0f, 1.0f);
+  return phong;
+}
+
+}  // namespace voxref

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "scene/scene.h"
+
+namespace voxref {
+
+/// A surface point in the terms of the published shaders, textures looked up.
+struct PhongMaterial {
+  glm::vec3 diffuse{0.0f};   ///< Kd
+  glm::vec3 specular{0.0f};  ///< Ks
+  float glossiness = 0.0f;   ///< s in [0,1]: the specular power is 2^(11 s + 1)
+  glm::vec3 emission{0.0f};  ///< Ke, radiance
+};
+
+/// KHR_materials_pbrSpecularGlossiness holds Kd, Ks and s as they are. Metallic-roughness is converted as that
+/// extension says: Kd = base (1 - metallic), Ks = mix(0.04 x specular colour, base, metallic), s = 1 - roughness.
+/// @param decode_textures false: colour textures are taken as the file holds them, sRGB-encoded
+PhongMaterial phong_material(const Scene& scene, uint32_t triangle, const glm::vec2& uv, bool decode_textures);
+
+}  // namespace voxref
