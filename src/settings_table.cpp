@@ -190,7 +190,7 @@ std::vector<Parameter> grid_and_voxel_parameters() {
           "shade.shadow", {"none", "rays", "volume"}, "shadows at the voxels",
           [](auto& s) -> auto& { return s.shade.shadow; }),
       optional_number(
-          "shade.shadow_hit", 0.0f, 1.0f, "root of what a voxel of a marched shadow blocks; null: its extinction",
+          "shade.shadow_hit", 0.0f, 10.0f, "root of what a voxel of a marched shadow blocks; null: its extinction",
           [](auto& s) -> auto& { return s.shade.shadow_hit; }),
       choice(
           "mipmap.filter", {"anisotropic", "isotropic"}, "directional volumes, or one plain mean",

@@ -26,7 +26,7 @@ float spot_ramp(float ramp, const LightOptions& options) {
 
 Illumination illuminate(const Light& light, const glm::vec3& point, const LightOptions& options) {
   if (light.type == LightType::directional)
-    return {-light.direction, std::numeric_limits<float>::infinity(), light.intensity};
+    return {-light.direction, std::numeric_limits<float>::infinity(), 1.0f, light.intensity};
 
   const glm::vec3 offset = light.position - point;
   const float distance_squared = glm::dot(offset, offset);
@@ -34,14 +34,15 @@ Illumination illuminate(const Light& light, const glm::vec3& point, const LightO
   Illumination result;
   result.distance = std::sqrt(distance_squared);
   result.to_light = (1.0f / result.distance) * offset;  // one division instead of three
-  result.irradiance = falloff(result.distance, options) * light.intensity;
+  result.attenuation = falloff(result.distance, options);
   if (light.type == LightType::spot) {
     constexpr float least_range = 0.001f;  // KHR_lights_punctual: keeps equal cone angles from dividing by zero
     const float cosine = -glm::dot(light.direction, result.to_light);
     const float ramp =
         std::clamp((cosine - light.cos_outer) / std::max(light.cos_inner - light.cos_outer, least_range), 0.0f, 1.0f);
-    result.irradiance *= spot_ramp(ramp, options);
+    result.attenuation *= spot_ramp(ramp, options);
   }
+  result.irradiance = result.attenuation * light.intensity;
   return result;
 }
 

@@ -32,6 +32,7 @@ struct LightOptions {
 struct Illumination {
   glm::vec3 to_light{0.0f};    ///< unit
   float distance = 0.0f;       ///< world units; infinity for a directional light
+  float attenuation = 0.0f;    ///< irradiance over intensity
   glm::vec3 irradiance{0.0f};  ///< W/m^2 on a surface that faces the light
 };
 

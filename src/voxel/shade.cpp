@@ -10,6 +10,7 @@
 
 #include "cone/march.h"
 #include "parallel.h"
+#include "voxel/shadow_volume.h"
 
 namespace voxref {
 
@@ -21,14 +22,8 @@ struct Facing {
   glm::vec3 side{0.0f};  ///< unit, off the surface on the side that is lit
 };
 
-// Light from behind counts as none: a voxel has one radiance for all directions, and what shone on the outside of a
-// wall would glow inside the room.
-Facing facing(const glm::vec3& mean_normal, const glm::vec3& to_light) {
-  const float length = glm::length(mean_normal);
-  if (length < two_sided_length) return {0.5f, to_light};
-  const glm::vec3 normal = mean_normal / length;
-  return {std::max(glm::dot(normal, to_light), 0.0f), normal};
-}
+/// A voxel's normal, unit; zero where it has none.
+glm::vec3 unit(const glm::vec3& normal) { return normal == glm::vec3(0.0f) ? normal : glm::normalize(normal); }
 
 // Where a shadow ray starts. At the centroid itself it could not: at a convex edge or corner the centroid lies inside
 // the solid, between the faces, and on a curved surface below it. The ray starts off the surface instead, on the lit
@@ -49,42 +44,83 @@ float ray_offset(const glm::vec3& side) {
 /// occupied one, along each axis, which for a slanted surface adds up to the 1-norm of the direction.
 float march_offset(const glm::vec3& side) { return 1.5f * (std::abs(side.x) + std::abs(side.y) + std::abs(side.z)); }
 
+/// sum over axes of n_a^2 max(sign(n_a) l_a, 0), in place of max(n.l, 0): thesis 2.2. Right only in the mean over light
+/// directions; at l = n it returns between 0.58 and 1 of n.l. @param n, l unit
+float normal_weighted(const glm::vec3& n, const glm::vec3& l) {
+  const auto axis = [](float n_a, float l_a) { return (n_a > 0.0f ? std::max(l_a, 0.0f) : std::max(-l_a, 0.0f)) * (n_a * n_a); };
+  return axis(n.x, l.x) + axis(n.y, l.y) + axis(n.z, l.z);
+}
+
 class Shader {
  public:
   Shader(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
-         VoxelShadow shadow)
-      : scene_(scene), caster_(caster), surfaces_(surfaces), light_options_(light), shadow_(shadow) {
-    assert(caster || shadow != VoxelShadow::rays);
-    if (shadow == VoxelShadow::volume) medium_ = make_opacity_medium(surfaces);
+         const ShadeOptions& options)
+      : scene_(scene), caster_(caster), surfaces_(surfaces), light_options_(light), options_(options) {
+    assert(caster || options.shadow != VoxelShadow::rays);
+    if (options.shadow != VoxelShadow::volume) return;
+    if (options.shadow_hit)
+      shadow_volume_.emplace(surfaces);
+    else
+      medium_ = make_opacity_medium(surfaces);
   }
 
   void operator()(size_t voxel, Shading& shading) const {
-    glm::vec3 irradiance(0.0f);
+    const glm::vec4& albedo = surfaces_.albedo[voxel];
+    if (albedo.a == 0.0f) return;  // reads as empty
+    glm::vec3 reflected(0.0f);
     float visible = 0.0f;
-    for (const Light& light : scene_.lights) {
-      const Illumination arriving = illuminate(light, surfaces_.centroid[voxel], light_options_);
-      if (arriving.irradiance == glm::vec3(0.0f)) continue;
-      const Facing surface = facing(surfaces_.normal[voxel], arriving.to_light);
-      if (!(surface.cosine > 0.0f)) continue;
-      const float share = visibility(light, voxel, surface.side);
-      irradiance += surface.cosine * share * arriving.irradiance;
-      visible += share;
+    if (glm::vec3(albedo) != glm::vec3(0.0f)) {
+      for (const Light& light : scene_.lights) {
+        const glm::vec3 position = shaded_point(voxel);
+        const Illumination arriving = illuminate(light, position, light_options_);
+        if (arriving.attenuation == 0.0f) continue;
+        const Facing surface = facing(voxel, arriving.to_light);
+        // Rays that change nothing are not cast; the published march, which does, says what light would be visible.
+        if (!(surface.cosine > 0.0f) && (caster_shadow() || medium_)) continue;
+        const float share = visibility(light, arriving, position, surface.side);
+        reflected += light.intensity * glm::vec3(albedo) * surface.cosine * arriving.attenuation * share;
+        visible += share;
+      }
     }
+    if (options_.normalization == ShadeNormalization::lambert) reflected *= std::numbers::inv_pi_v<float>;
     const glm::vec3 emission = surfaces_.emission.empty() ? glm::vec3(0.0f) : surfaces_.emission[voxel];
-    shading.radiance[voxel] =
-        emission + glm::vec3(surfaces_.albedo[voxel]) * std::numbers::inv_pi_v<float> * irradiance;
-    shading.visibility[voxel] = visible / std::max(1.0f, float(scene_.lights.size()));
+    shading.radiance[voxel] = emission + reflected;
+    const float lights = float(std::max<size_t>(scene_.lights.size(), 1));
+    shading.visibility[voxel] = std::clamp(visible / lights, 0.0f, 1.0f);
   }
 
  private:
-  /// Share of a light that reaches a voxel, in [0,1].
-  float visibility(const Light& light, size_t voxel, const glm::vec3& side) const {
-    if (shadow_ == VoxelShadow::none) return 1.0f;
+  bool caster_shadow() const { return options_.shadow == VoxelShadow::rays; }
+
+  glm::vec3 shaded_point(size_t voxel) const {
+    if (options_.position == ShadePosition::centroid) return surfaces_.centroid[voxel];
     const Grid& grid = surfaces_.grid;
-    const float offset = grid.voxel * (shadow_ == VoxelShadow::rays ? ray_offset(side) : march_offset(side));
-    const glm::vec3 from = surfaces_.centroid[voxel] + offset * side;
+    const glm::vec3 corner = glm::vec3(surfaces_.voxels[voxel]) * grid.voxel + grid.min;
+    return corner + unit(surfaces_.normal[voxel]) * (0.5f * grid.voxel);
+  }
+
+  // Light from behind counts as none: a voxel has one radiance for all directions, and what shone on the outside of a
+  // wall would glow inside the room.
+  Facing facing(size_t voxel, const glm::vec3& to_light) const {
+    const glm::vec3& mean_normal = surfaces_.normal[voxel];
+    if (options_.two_sided && glm::length(mean_normal) < two_sided_length) return {0.5f, to_light};
+    const glm::vec3 normal = unit(mean_normal);
+    const float cosine =
+        options_.normal_weighted ? normal_weighted(normal, to_light) : std::max(glm::dot(normal, to_light), 0.0f);
+    return {cosine, normal};
+  }
+
+  /// Share of a light that reaches a voxel; in [0,1] but for directional lights, which the published march can turn
+  /// negative.
+  float visibility(const Light& light, const Illumination& arriving, const glm::vec3& position,
+                   const glm::vec3& side) const {
+    if (shadow_volume_) return published_visibility(light, arriving, position);
+    if (options_.shadow == VoxelShadow::none) return 1.0f;
+    const Grid& grid = surfaces_.grid;
+    const float offset = grid.voxel * (caster_shadow() ? ray_offset(side) : march_offset(side));
+    const glm::vec3 from = position + offset * side;
     const bool directional = light.type == LightType::directional;
-    if (shadow_ == VoxelShadow::rays) {
+    if (caster_shadow()) {
       const Ray ray = directional ? Ray{from, -light.direction} : Ray{from, light.position - from, 0.0f, 1.0f};
       return caster_->occluded(ray) ? 0.0f : 1.0f;
     }
@@ -96,11 +132,24 @@ class Shader {
     return 1.0f - march_opacity(*medium_, from, to, line, step);
   }
 
+  float published_visibility(const Light& light, const Illumination& arriving, const glm::vec3& position) const {
+    const Grid& grid = surfaces_.grid;
+    const float scale = 1.0f / (grid.voxel * float(std::max({grid.size.x, grid.size.y, grid.size.z})));
+    const glm::vec3 from = (position - grid.min) * scale;
+    const float hit = *options_.shadow_hit;
+    if (light.type == LightType::directional)  // not clamped at 0, by an oversight of the published shader
+      return shadow_volume_->visibility(from, arriving.to_light, 1.0f, hit);
+    const glm::vec3 offset = (light.position - grid.min) * scale - from;
+    const float distance = glm::length(offset);
+    return std::max(0.0f, shadow_volume_->visibility(from, glm::normalize(offset), distance, hit));
+  }
+
   const Scene& scene_;
   const Caster* caster_;
   const SurfaceGrid& surfaces_;
   LightOptions light_options_;
-  VoxelShadow shadow_;
+  ShadeOptions options_;
+  std::optional<ShadowVolume> shadow_volume_;
   std::optional<Medium> medium_;
 };
 
@@ -108,7 +157,7 @@ class Shader {
 
 Shading shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
               const ShadeOptions& options, const Progress& progress) {
-  const Shader shader(scene, caster, surfaces, light, options.shadow);
+  const Shader shader(scene, caster, surfaces, light, options);
   Shading shading{std::vector<glm::vec3>(surfaces.size()), std::vector<float>(surfaces.size())};
   std::atomic<size_t> finished = 0;
   parallel_for(surfaces.size(), 1024, [&](size_t begin, size_t end) {
