@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "cone/raw_bounce.h"
 #include "error.h"
 #include "image/image.h"
 #include "parallel.h"
@@ -20,17 +21,60 @@ constexpr double negligible_share = 0.01;  // of the total: what one more bounce
 constexpr int usual_bounces = 6;           // until the first tells more: an albedo of about a half
 constexpr size_t grain = 256;              // voxels per task, some milliseconds
 
-/// Irradiance at one voxel from the radiance in `medium`.
-glm::vec3 voxel_irradiance(const SurfaceGrid& surfaces, size_t i, const Medium& medium, const ConeSet& cones,
-                           const ConeOptions& options, const glm::vec3& background) {
-  const auto gather = [&](const glm::vec3& n) {
-    return gather_diffuse(medium, cones, {surfaces.centroid[i], n, n}, options, AoOptions{}, background).irradiance;
-  };
-  const float length = glm::length(surfaces.normal[i]);
-  if (length >= two_sided_length) return gather(surfaces.normal[i] / length);
-  const glm::vec3 n = length > 0.0f ? surfaces.normal[i] / length : glm::vec3(0.0f, 1.0f, 0.0f);
-  return 0.5f * (gather(n) + gather(-n));
-}
+/// What a bounce gathers from: radiometric cones at the centroid.
+class MediumGather {
+ public:
+  MediumGather(const SurfaceGrid& surfaces, Medium&& medium, const BounceOptions& options, const ConeOptions& cone,
+               const glm::vec3& background)
+      : surfaces_(surfaces),
+        medium_(std::move(medium)),
+        cones_(voxel_cones(options.cones)),
+        cone_(cone),
+        background_(background) {}
+
+  /// Albedo/pi x irradiance at voxel i.
+  glm::vec3 reflected(size_t i) const {
+    return glm::vec3(surfaces_.albedo[i]) * irradiance(i) / std::numbers::pi_v<float>;
+  }
+
+ private:
+  glm::vec3 irradiance(size_t i) const {
+    const auto gather = [&](const glm::vec3& n) {
+      return gather_diffuse(medium_, cones_, {surfaces_.centroid[i], n, n}, cone_, AoOptions{}, background_).irradiance;
+    };
+    const float length = glm::length(surfaces_.normal[i]);
+    if (length >= two_sided_length) return gather(surfaces_.normal[i] / length);
+    const glm::vec3 n = length > 0.0f ? surfaces_.normal[i] / length : glm::vec3(0.0f, 1.0f, 0.0f);
+    return 0.5f * (gather(n) + gather(-n));
+  }
+
+  const SurfaceGrid& surfaces_;
+  Medium medium_;
+  ConeSet cones_;
+  const ConeOptions& cone_;
+  glm::vec3 background_;
+};
+
+/// The published shaders' cones at the voxel's corner, without the 1/pi.
+template <class Texel>
+class RawGather {
+ public:
+  RawGather(const SurfaceGrid& surfaces, BasicPyramid<Texel>&& pyramid, const BounceOptions& options)
+      : surfaces_(surfaces), pyramid_(std::move(pyramid)), gatherer_(pyramid_, options.max_distance) {}
+
+  /// Albedo x irradiance at voxel i.
+  glm::vec3 reflected(size_t i) const {
+    const glm::vec4& albedo = surfaces_.albedo[i];
+    const glm::vec3& normal = surfaces_.normal[i];
+    if (albedo.a == 0.0f || normal == glm::vec3(0.0f)) return glm::vec3(0.0f);
+    return glm::vec3(albedo) * gatherer_.irradiance(surfaces_.voxels[i], glm::normalize(normal));
+  }
+
+ private:
+  const SurfaceGrid& surfaces_;
+  BasicPyramid<Texel> pyramid_;
+  RawVoxelGatherer<Texel> gatherer_;
+};
 
 struct Sums {
   double total = 0.0;   ///< luminance of the new radiance over all voxels
@@ -63,9 +107,9 @@ int bounces_left(const Sums& sums, double gain) {
   return static_cast<int>(std::clamp(left, 1.0, double(most_bounces)));
 }
 
-/// One bounce: replaces `radiance` by direct + albedo/pi E(medium).
-Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, const Medium& medium,
-                   const ConeSet& cones, const ConeOptions& options, const glm::vec3& background,
+/// One bounce: replaces `radiance` by direct + what is reflected of what `gather` sees.
+template <class Gather>
+Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, const Gather& gather,
                    std::vector<glm::vec3>& radiance, const BounceProgress& progress) {
   std::vector<Sums> partial((surfaces.size() + grain - 1) / grain);  // merged by index: the same bits for any threads
   std::atomic<size_t> done{0};
@@ -73,9 +117,8 @@ Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direc
     progress.check();
     Sums& sums = partial[begin / grain];
     for (size_t i = begin; i < end; ++i) {
-      const glm::vec3 irradiance = voxel_irradiance(surfaces, i, medium, cones, options, background);
       const glm::vec3 old = radiance[i];
-      radiance[i] = direct[i] + glm::vec3(surfaces.albedo[i]) * irradiance / std::numbers::pi_v<float>;
+      radiance[i] = direct[i] + gather.reflected(i);
       sums.total += luminance(radiance[i]);
       sums.change += double(luminance(radiance[i])) - luminance(old);
     }
@@ -103,20 +146,25 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
                                 BasicPyramid<Texel>&& filtered, const BounceOptions& options, const ConeOptions& cone,
                                 const MipmapOptions& mipmap_options, const glm::vec3& background,
                                 const Progress& progress) {
-  const ConeSet cones = voxel_cones(options.cones);
   BasicBounceResult<Texel> result;
   result.radiance.assign(direct.begin(), direct.end());
   result.pyramid = std::move(filtered);
-
+  // Each bounce takes over the pyramid's memory and frees it before the next is made: only one is held at a time.
+  const auto gather = [&](const BounceProgress& so_far) {
+    if (options.cones == published_cones)
+      return gather_bounce(surfaces, direct, RawGather<Texel>(surfaces, std::move(result.pyramid), options),
+                           result.radiance, so_far);
+    return gather_bounce(surfaces, direct,
+                         MediumGather(surfaces, make_medium(std::move(result.pyramid)), options, cone, background),
+                         result.radiance, so_far);
+  };
   BounceProgress so_far(progress);
   const Progress silent{{}, progress.cancel};  // filtering is a part of the bounce
   double previous = 0.0;
   int left = options.count.value_or(usual_bounces);
   for (const int most = options.count.value_or(most_bounces); result.bounces < most;) {
     so_far.begin(left);
-    Medium medium = make_medium(std::move(result.pyramid));
-    const Sums sums = gather_bounce(surfaces, direct, medium, cones, cone, background, result.radiance, so_far);
-    medium = {};  // before the next pyramid is made: only one is held at a time
+    const Sums sums = gather(so_far);
     result.pyramid = mipmap<Texel>(surfaces, result.radiance, mipmap_options, silent);
     ++result.bounces;
 

@@ -1,0 +1,63 @@
+#include "cone/raw_bounce.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "cone/raw_lookup.h"
+
+namespace voxref {
+
+namespace {
+
+constexpr float offset = 2.0f;  // voxels along the normal to the apex, and from there to the first sample
+
+std::vector<ConeStep> steps_of(const Grid& grid, float tan_half_angle, size_t levels, std::optional<float> max_distance) {
+  const glm::vec3 size(grid.size);
+  ConeStepping stepping;
+  stepping.unit = offset;
+  stepping.step = 1.0f;
+  stepping.end = max_distance ? *max_distance * std::max({size.x, size.y, size.z}) : glm::length(size);
+  stepping.top = static_cast<int>(levels);
+  std::vector<ConeStep> steps = cone_steps(tan_half_angle, stepping);
+  for (ConeStep& step : steps)
+    if (step.level == 0) step = {step.distance, 1, 0.0f, 1.0f};  // never the base
+  return steps;
+}
+
+}  // namespace
+
+template <class Texel>
+RawVoxelGatherer<Texel>::RawVoxelGatherer(const BasicPyramid<Texel>& pyramid, std::optional<float> max_distance)
+    : pyramid_(pyramid), cones_(voxel_cones(published_cones)) {
+  steps_ = steps_of(pyramid.grid, cones_.cones.front().tan_half_angle, pyramid.levels.size(), max_distance);
+}
+
+template <class Texel>
+glm::vec3 RawVoxelGatherer<Texel>::irradiance(const glm::ivec3& voxel, const glm::vec3& normal) const {
+  const glm::mat3 frame = cones_.frame(normal);
+  const glm::vec3 apex = glm::vec3(voxel) + offset * normal;
+  glm::vec3 sum(0.0f);
+  for (const Cone& cone : cones_.cones) sum += cone.weight * march(apex, glm::normalize(frame * cone.direction));
+  return glm::clamp(sum, 0.0f, 1.0f);
+}
+
+template <class Texel>
+glm::vec3 RawVoxelGatherer<Texel>::march(const glm::vec3& apex, const glm::vec3& direction) const {
+  const SquaredRead read(direction);
+  const glm::vec3 size(pyramid_.grid.size);
+  Float4 gathered{};
+  for (const ConeStep& step : steps_) {
+    const glm::vec3 p = apex + step.distance * direction;
+    const bool first = &step == steps_.data();
+    if (first && (glm::any(glm::lessThan(p, glm::vec3(0.0f))) || glm::any(glm::greaterThan(p, size)))) break;
+    gathered += (1.0f - gathered[3]) * sample_raw(pyramid_, p, step, read);
+    if (gathered[3] > 1.0f) break;
+  }
+  return glm::vec3(to_vec4(gathered));
+}
+
+template class RawVoxelGatherer<glm::vec4>;
+template class RawVoxelGatherer<Rgba8>;
+
+}  // namespace voxref

@@ -1,0 +1,31 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "cone/cone_set.h"
+#include "cone/raw_march.h"
+#include "voxel/mipmap.h"
+
+namespace voxref {
+
+/// Irradiance at voxels as the published shaders gather it (spec section 6, villegas2016): from the voxel's minimum
+/// corner, two voxels along the normal, with cones that read the directional volumes alone. A sample at distance s
+/// (voxels: 2, 4, 8, ...) stands for a cube of that size.
+template <class Texel>
+class RawVoxelGatherer {
+ public:
+  /// @param pyramid kept by reference @param max_distance in the grid's longest sides; none: to its diagonal
+  RawVoxelGatherer(const BasicPyramid<Texel>& pyramid, std::optional<float> max_distance);
+
+  /// In [0,1]: the shader clamps it. @param normal unit
+  glm::vec3 irradiance(const glm::ivec3& voxel, const glm::vec3& normal) const;
+
+ private:
+  glm::vec3 march(const glm::vec3& apex, const glm::vec3& direction) const;
+
+  const BasicPyramid<Texel>& pyramid_;
+  ConeSet cones_;
+  std::vector<ConeStep> steps_;  ///< distances in voxels
+};
+
+}  // namespace voxref
