@@ -115,6 +115,9 @@ void VolumeFolderWriter::write_surfaces(const SurfaceGrid& surfaces) {
   write_sparse(attribute("emission", 4), surfaces, [&](size_t i, float* channels) {
     store(glm::vec4(surfaces.emission.empty() ? glm::vec3(0.0f) : surfaces.emission[i], alpha(i)), channels);
   });
+  write_sparse(attribute("static_flag", 1), surfaces, [&](size_t i, float* channels) {
+    *channels = surfaces.dynamic.empty() || surfaces.dynamic[i] == 0 ? 1.0f : 0.0f;
+  });
 }
 
 void VolumeFolderWriter::write_visibility(const SurfaceGrid& surfaces, std::span<const float> visibility) {
