@@ -12,7 +12,8 @@ namespace {
 
 constexpr float offset = 2.0f;  // voxels along the normal to the apex, and from there to the first sample
 
-std::vector<ConeStep> steps_of(const Grid& grid, float tan_half_angle, size_t levels, std::optional<float> max_distance) {
+std::vector<ConeStep> steps_of(const Grid& grid, float tan_half_angle, size_t levels,
+                               std::optional<float> max_distance) {
   const glm::vec3 size(grid.size);
   ConeStepping stepping;
   stepping.unit = offset;
@@ -23,6 +24,13 @@ std::vector<ConeStep> steps_of(const Grid& grid, float tan_half_angle, size_t le
   for (ConeStep& step : steps)
     if (step.level == 0) step = {step.distance, 1, 0.0f, 1.0f};  // never the base
   return steps;
+}
+
+/// normalize(n + a R + b U), summed as the shader sums it: another order moves a voxel in some twenty thousand by
+/// 1/255.
+glm::vec3 turned(const glm::mat3& frame, const Cone& cone) {
+  const glm::vec3 d = cone.direction / cone.direction.z;
+  return glm::normalize(frame[2] + (d.x * frame[0] + d.y * frame[1]));
 }
 
 }  // namespace
@@ -38,7 +46,7 @@ glm::vec3 RawVoxelGatherer<Texel>::irradiance(const glm::ivec3& voxel, const glm
   const glm::mat3 frame = cones_.frame(normal);
   const glm::vec3 apex = glm::vec3(voxel) + offset * normal;
   glm::vec3 sum(0.0f);
-  for (const Cone& cone : cones_.cones) sum += cone.weight * march(apex, glm::normalize(frame * cone.direction));
+  for (const Cone& cone : cones_.cones) sum += cone.weight * march(apex, turned(frame, cone));
   return glm::clamp(sum, 0.0f, 1.0f);
 }
 

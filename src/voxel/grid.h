@@ -7,8 +7,8 @@
 namespace voxref {
 
 struct GridOptions {
-  int resolution = 256;          ///< voxels along the longest side, 16 to 2048; with `cubic` a power of two
-  bool cubic = false;            ///< a cube from the box's minimum corner, without margin, as the published shaders do
+  int resolution = 256;  ///< voxels along the longest side, 16 to 2048; with `cubic` a power of two
+  bool cubic = false;    ///< a cube from the box's minimum corner, without margin, as the published shaders do
   std::optional<Bounds> bounds{};  ///< box in place of the scene's own, world units; taken as it is, without margin
 };
 

@@ -28,9 +28,7 @@ glm::vec2 intersection(const glm::vec3& line, const glm::vec3& next) {
 /// First and last pixel whose centre is in [low, high] NDC, inside a view of `size` pixels, as a half-open range.
 std::array<int, 2> pixels_between(float low, float high, int size) {
   const auto center = [size](int pixel) { return (float(pixel) + 0.5f) * (2.0f / float(size)) - 1.0f; };
-  const auto near = [size](float ndc) {
-    return int(std::clamp((ndc + 1.0f) * 0.5f * float(size), 0.0f, float(size)));
-  };
+  const auto near = [size](float ndc) { return int(std::clamp((ndc + 1.0f) * 0.5f * float(size), 0.0f, float(size))); };
   int begin = std::max(near(low) - 1, 0), end = std::min(near(high) + 1, size);
   while (begin < end && center(begin) < low) ++begin;
   while (end > begin && center(end - 1) > high) --end;

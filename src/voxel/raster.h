@@ -18,7 +18,7 @@ struct RasterTriangle {
 
 /// One pixel of a triangle.
 struct RasterFragment {
-  glm::ivec3 voxel{0};  ///< may lie outside the grid
+  glm::ivec3 voxel{0};     ///< may lie outside the grid
   glm::vec3 normal{0.0f};  ///< interpolated, not normalized
   glm::vec2 uv{0.0f};
 };

@@ -47,7 +47,9 @@ float march_offset(const glm::vec3& side) { return 1.5f * (std::abs(side.x) + st
 /// sum over axes of n_a^2 max(sign(n_a) l_a, 0), in place of max(n.l, 0): thesis 2.2. Right only in the mean over light
 /// directions; at l = n it returns between 0.58 and 1 of n.l. @param n, l unit
 float normal_weighted(const glm::vec3& n, const glm::vec3& l) {
-  const auto axis = [](float n_a, float l_a) { return (n_a > 0.0f ? std::max(l_a, 0.0f) : std::max(-l_a, 0.0f)) * (n_a * n_a); };
+  const auto axis = [](float n_a, float l_a) {
+    return (n_a > 0.0f ? std::max(l_a, 0.0f) : std::max(-l_a, 0.0f)) * (n_a * n_a);
+  };
   return axis(n.x, l.x) + axis(n.y, l.y) + axis(n.z, l.z);
 }
 

@@ -40,11 +40,11 @@ struct Shading {
   std::vector<float> visibility;    ///< mean over the lights of the share that arrives, in [0,1]; 0 without lights
 };
 
-/// Radiance of each occupied voxel: emission + albedo/pi x irradiance x visibility of the punctual lights, at the voxel's
-/// centroid, with max(n.l, 0) of the unit mean normal: a voxel stands for its surface's front. Where opposite normals
-/// cancel (mean normal shorter than two_sided_length) the voxel is lit as a sheet that faces the light with the mean
-/// |cos| of a random orientation, 1/2. Shadow rays start half a voxel off the surface. Spec section 3; the options turn
-/// the radiometric profile into villegas2016. Voxels whose opacity is 0 stay dark, black ones have visibility 0.
+/// Radiance of each occupied voxel: emission + albedo/pi x irradiance x visibility of the punctual lights, at the
+/// voxel's centroid, with max(n.l, 0) of the unit mean normal: a voxel stands for its surface's front. Where opposite
+/// normals cancel (mean normal shorter than two_sided_length) the voxel is lit as a sheet that faces the light with the
+/// mean |cos| of a random orientation, 1/2. Shadow rays start half a voxel off the surface. Spec section 3; the options
+/// turn the radiometric profile into villegas2016. Voxels whose opacity is 0 stay dark, black ones have visibility 0.
 /// @param caster may be null unless shadow is `rays`
 Shading shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
               const ShadeOptions& options, const Progress& progress = {});

@@ -8,8 +8,8 @@
 
 namespace voxref {
 
-/// The published shaders' shadow march through a volume of occupied voxels (spec section 3, villegas2016). Positions and
-/// distances are in texture space: the grid's longest side is 1, its minimum corner the origin.
+/// The published shaders' shadow march through a volume of occupied voxels (spec section 3, villegas2016). Positions
+/// and distances are in texture space: the grid's longest side is 1, its minimum corner the origin.
 class ShadowVolume {
  public:
   /// Voxels whose opacity is 0 count as empty.
@@ -27,7 +27,8 @@ class ShadowVolume {
 
   void mark(const glm::ivec3& cell);
   size_t block_index(const glm::ivec3& cell) const {
-    return size_t(cell.x / side) + size_t(blocks_.x) * (size_t(cell.y / side) + size_t(blocks_.y) * size_t(cell.z / side));
+    return size_t(cell.x / side) +
+           size_t(blocks_.x) * (size_t(cell.y / side) + size_t(blocks_.y) * size_t(cell.z / side));
   }
   /// Whether a bit of an existing block is set.
   static bool bit(const Block& block, const glm::ivec3& v) {
@@ -39,8 +40,8 @@ class ShadowVolume {
 
   glm::ivec3 size_{0}, blocks_{0};
   float resolution_ = 1.0f;  // voxels along the longest side
-  // Cell c is what a filter reads that lies between the centres of voxels c - 1 and c along each axis; it is marked when
-  // any of the eight is occupied. So the march reads one bit per sample, and skips blocks without any.
+  // Cell c is what a filter reads that lies between the centres of voxels c - 1 and c along each axis; it is marked
+  // when any of the eight is occupied. So the march reads one bit per sample, and skips blocks without any.
   std::vector<uint32_t> slots_;
   std::vector<Block> cells_, voxels_;
 };

@@ -15,10 +15,10 @@ namespace voxref {
 /// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), dense (cli.md,
 /// "Volumes"): albedo (a = opacity), normal, emission, visibility, radiance, radiance_bounce, aniso_<face>_<level>,
 /// aniso_bounce_<face>_<level>. Radiance and aniso volumes are premultiplied. In float32 there is centroid (world) too,
-/// and emission only where the scene has it. In unorm8 volumes are uint8, normals as 0.5 n + 0.5, and static_flag is there; of voxels that count
-/// their fragments, albedo, normal and emission have the count as alpha. Files appear whole or not at all, and all of
-/// them or none; volumes.json goes away with the first volume that is written and comes back last, so that it never
-/// describes a mixture. Volumes pass through memory a slice at a time.
+/// and emission only where the scene has it. In unorm8 volumes are uint8, normals as 0.5 n + 0.5, and static_flag is
+/// there; of voxels that count their fragments, albedo, normal and emission have the count as alpha. Files appear whole
+/// or not at all, and all of them or none; volumes.json goes away with the first volume that is written and comes back
+/// last, so that it never describes a mixture. Volumes pass through memory a slice at a time.
 class VolumeFolderWriter {
  public:
   /// Makes the folder, and those above it, where they are missing. @throws Error with the path

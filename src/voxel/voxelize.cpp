@@ -48,7 +48,9 @@ class AreaMerge {
   }
   void mix(size_t f, size_t m) {
     const float area = fixed_.area[f] + moving_.area[m], share = moving_.area[m] / area;
-    const auto mean = [&](const auto& values) { return (1.0f - share) * (fixed_.*values)[f] + share * (moving_.*values)[m]; };
+    const auto mean = [&](const auto& values) {
+      return (1.0f - share) * (fixed_.*values)[f] + share * (moving_.*values)[m];
+    };
     glm::vec4 albedo = mean(&SurfaceGrid::albedo);
     // Opacity does not average: together they cover at least as much as either alone, at most their sum.
     albedo.a = std::min(1.0f, fixed_.albedo[f].a + moving_.albedo[m].a);

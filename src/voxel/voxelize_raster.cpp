@@ -71,8 +71,7 @@ class FragmentShader {
     const uint32_t index = scene_.triangle_materials[triangle];
     const Material& material = scene_.materials[index];
     const TextureBinding& binding = bindings_[index];
-    const glm::vec4 texel =
-        binding ? lookup(scene_.images[size_t(binding.image)], binding, pixel.uv) : glm::vec4(1.0f);
+    const glm::vec4 texel = binding ? lookup(scene_.images[size_t(binding.image)], binding, pixel.uv) : glm::vec4(1.0f);
     const float opacity = material.base_color.a * texel.a;
     if (!(opacity > 0.0f)) return;
     const glm::vec3 color(texel);
@@ -106,9 +105,8 @@ std::vector<std::vector<Fragment>> draw(const Scene& scene, const Grid& grid, bo
     for (size_t i = begin; i < end; ++i) {
       const Rows& rows = tasks[i];
       const auto triangle = DilatedTriangle::make(shader.triangle(rows.triangle), views);
-      triangle->for_each_fragment(rows.begin, rows.end, [&](const RasterFragment& pixel) {
-        shader(rows.triangle, pixel, written);
-      });
+      triangle->for_each_fragment(rows.begin, rows.end,
+                                  [&](const RasterFragment& pixel) { shader(rows.triangle, pixel, written); });
     }
     progress("voxelize", double(done += end - begin) / double(tasks.size()));
   });
@@ -246,8 +244,8 @@ void store(SurfaceGrid& surfaces, size_t i, const glm::ivec3& index, const Voxel
 
 }  // namespace
 
-SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool dynamic,
-                            const VoxelizeOptions& options, const Progress& progress) {
+SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool dynamic, const VoxelizeOptions& options,
+                            const Progress& progress) {
   const Grid& grid = before.grid;
   assert(grid.size.x == grid.size.y && grid.size.x == grid.size.z);
   const std::vector<std::vector<Fragment>> drawn = draw(scene, grid, dynamic, progress);

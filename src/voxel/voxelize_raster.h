@@ -11,7 +11,7 @@ namespace voxref {
 /// holes unless it is 0, and emission takes the base colour's texel.
 /// @param before voxels that are there already; with options.static_wins they stay as they are
 /// @return them and what was drawn
-SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool dynamic,
-                            const VoxelizeOptions& options, const Progress& progress);
+SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool dynamic, const VoxelizeOptions& options,
+                            const Progress& progress);
 
 }  // namespace voxref

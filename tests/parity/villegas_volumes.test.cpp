@@ -1,5 +1,5 @@
-// The villegas2016 profile against the volumes that the published shaders made (shared/gpu): each stage on the GPU's own
-// previous volume, then all of them from the scene file.
+// The villegas2016 profile against the volumes that the published shaders made (shared/gpu): each stage on the GPU's
+// own previous volume, then all of them from the scene file.
 #include "catch.h"
 #include "cone/bounce.h"
 #include "gpu_volumes.h"

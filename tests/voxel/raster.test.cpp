@@ -65,7 +65,8 @@ TEST_CASE("A triangle without area vanishes", "[raster]") {
 }
 
 TEST_CASE("Along each axis a wall lands in the voxels that hold it", "[raster]") {
-  // Lower left half of a square, in a plane of constant coordinate 5.5, the corners well inside voxels (2, 2) to (9, 9).
+  // Lower left half of a square, in a plane of constant coordinate 5.5, the corners well inside voxels (2, 2) to (9,
+  // 9).
   for (int axis = 0; axis < 3; ++axis) {
     const auto point = [axis](float u, float v) {
       glm::vec3 p;

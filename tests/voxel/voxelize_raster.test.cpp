@@ -96,9 +96,10 @@ TEST_CASE("Emission above 1 wraps", "[voxelize_raster]") {
 
 TEST_CASE("A voxel that got 256 fragments keeps its bytes and reads as empty", "[voxelize_raster]") {
   Mesh mesh;
-  for (int i = 0; i < 256; ++i) append(mesh, Mesh{{{6.1f, 6.1f, 3.5f}, {6.2f, 6.1f, 3.5f}, {6.1f, 6.2f, 3.5f}},
-                                                  {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
-                                                  {{0, 1, 2}}});
+  for (int i = 0; i < 256; ++i)
+    append(mesh, Mesh{{{6.1f, 6.1f, 3.5f}, {6.2f, 6.1f, 3.5f}, {6.1f, 6.2f, 3.5f}},
+                      {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+                      {{0, 1, 2}}});
   const SurfaceGrid surfaces = voxelize(scene_of(mesh), grid, raster);
   REQUIRE(surfaces.size() == 1);
   CHECK(surfaces.fragments[0] == 0);
@@ -122,8 +123,8 @@ TEST_CASE("Triangles average in draw order", "[voxelize_raster]") {
 TEST_CASE("Raster voxels have the same bits on one thread and on many", "[voxelize_raster]") {
   Scene scene;
   for (int i = 0; i < 40; ++i) {
-    const Mesh turned = moved(rotated(box({-3, -2, -4}, {4, 3, 2}), float(17 * i), glm::normalize(glm::vec3(1, i, 2))),
-                              {8, 8, 8});
+    const Mesh turned =
+        moved(rotated(box({-3, -2, -4}, {4, 3, 2}), float(17 * i), glm::normalize(glm::vec3(1, i, 2))), {8, 8, 8});
     add_object(scene, "box", turned, add_material(scene, lambertian("", glm::vec3(0.02f * float(i), 0.5f, 0.9f))));
   }
   const SurfaceGrid many = voxelize(scene, grid, raster);
