@@ -11,7 +11,7 @@ namespace voxref {
 
 template <class Texel>
 RawGatherer<Texel>::RawGatherer(const BasicPyramid<Texel>& pyramid, ConeSet diffuse, const GatherOptions& options)
-    : pyramid_(pyramid), diffuse_(std::move(diffuse)), options_(options) {
+    : pyramid_(pyramid), diffuse_(std::move(diffuse)), options_(options), empty_(pyramid.base) {
   const Grid& grid = pyramid.grid;
   side_ = grid.voxel * static_cast<float>(std::max({grid.size.x, grid.size.y, grid.size.z}));
   unit_ = grid.voxel * options.cone.raw_unit;
@@ -73,7 +73,8 @@ float RawGatherer<Texel>::visibility(const GatherPoint& point, const Light& ligh
   const float end = light.type == LightType::directional ? side_ : lit.distance;
   const float gain = options_.shadow_tolerance == 1.0f ? std::numeric_limits<float>::infinity()
                                                        : std::exp2(7.0f * options_.shadow_tolerance);
-  return march_raw_shadow(pyramid_, point.position + unit_ * lit.to_light, lit.to_light, shadow_steps_, end, gain);
+  return march_raw_shadow(pyramid_, empty_, point.position + unit_ * lit.to_light, lit.to_light, shadow_steps_, end,
+                          gain);
 }
 
 template class RawGatherer<glm::vec4>;

@@ -1,5 +1,6 @@
 #include "cone/raw_march.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <glm/common.hpp>
@@ -40,19 +41,39 @@ RawCone march_raw(const BasicPyramid<Texel>& pyramid, const glm::vec3& start, co
   return {{gathered[0], gathered[1], gathered[2]}, gathered[3], occlusion};
 }
 
+/// Opacity alone of the base volume.
 template <class Texel>
-float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const glm::vec3& start, const glm::vec3& direction,
-                       const std::vector<ConeStep>& steps, float end, float gain) {
+float base_alpha(const BrickVolume<Texel>& base, const glm::vec3& p) {
+  const Corners<Texel> corners = corners_around(base, p);
+  if (corners.empty) return 0.0f;
+  std::array<float, 8> alphas;
+  for (size_t i = 0; i < 8; ++i) alphas[i] = decode_alpha(*corners.texels[i]);
+  return mix_corners(alphas, corners.f);
+}
+
+template <class Texel>
+float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const EmptySpace& empty, const glm::vec3& start,
+                       const glm::vec3& direction, const std::vector<ConeStep>& steps, float end, float gain) {
   constexpr float least_alpha = 1e-30f;  // the published shaders' EPSILON: any stored alpha is above it
   const glm::vec3 origin = pyramid.grid.to_voxels(start), way = direction / pyramid.grid.voxel;
   const SquaredRead read(direction);
   const bool hard = gain == std::numeric_limits<float>::infinity();
-  float blocked = 0.0f;
+  float blocked = 0.0f, empty_until = 0.0f;
   for (const ConeStep& step : steps) {
     if (step.distance > end) break;
-    const float alpha = sample_raw(pyramid, origin + step.distance * way, step, read)[3];
+    const bool base_alone = step.level == 0 && step.fraction == 0.0f;
+    if (base_alone && step.distance < empty_until) continue;
+    const glm::vec3 p = origin + step.distance * way;
+    float alpha = 0.0f;
+    if (!base_alone)
+      alpha = sample_raw(pyramid, p, step, read)[3];
+    else if (const float reach = empty.reach(p, way); reach > 0.0f)
+      empty_until = step.distance + reach;
+    else
+      alpha = base_alpha(pyramid.base, p);
+    if (alpha == 0.0f) continue;
     if (hard && alpha > least_alpha) return 0.0f;
-    if (alpha != 0.0f) blocked += (1.0f - blocked) * alpha * gain;
+    blocked += (1.0f - blocked) * alpha * gain;
     if (blocked >= 1.0f) return 0.0f;
   }
   return 1.0f - blocked;
@@ -62,9 +83,9 @@ template RawCone march_raw(const BasicPyramid<glm::vec4>&, const glm::vec3&, con
                            const std::vector<ConeStep>&);
 template RawCone march_raw(const BasicPyramid<Rgba8>&, const glm::vec3&, const glm::vec3&,
                            const std::vector<ConeStep>&);
-template float march_raw_shadow(const BasicPyramid<glm::vec4>&, const glm::vec3&, const glm::vec3&,
+template float march_raw_shadow(const BasicPyramid<glm::vec4>&, const EmptySpace&, const glm::vec3&, const glm::vec3&,
                                 const std::vector<ConeStep>&, float, float);
-template float march_raw_shadow(const BasicPyramid<Rgba8>&, const glm::vec3&, const glm::vec3&,
+template float march_raw_shadow(const BasicPyramid<Rgba8>&, const EmptySpace&, const glm::vec3&, const glm::vec3&,
                                 const std::vector<ConeStep>&, float, float);
 
 bool meets(const Bounds& box, const glm::vec3& origin, const glm::vec3& direction) {

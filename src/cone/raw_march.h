@@ -2,6 +2,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "cone/empty_space.h"
 #include "scene/scene.h"
 #include "voxel/mipmap.h"
 
@@ -45,9 +46,10 @@ RawCone march_raw(const BasicPyramid<Texel>& pyramid, const glm::vec3& start, co
 /// What a raw shadow cone lets through, in [0,1]: v += (1 - v) gain alpha until v >= 1, then 1 - v.
 /// @param end samples beyond this distance are not taken, world units
 /// @param gain infinity: any alpha above 1e-30 is black
+/// @param empty of pyramid.base
 template <class Texel>
-float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const glm::vec3& start, const glm::vec3& direction,
-                       const std::vector<ConeStep>& steps, float end, float gain);
+float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const EmptySpace& empty, const glm::vec3& start,
+                       const glm::vec3& direction, const std::vector<ConeStep>& steps, float end, float gain);
 
 /// Whether a ray meets a box: the slab test of the published shaders, by which a ray that only grazes it does not.
 bool meets(const Bounds& box, const glm::vec3& origin, const glm::vec3& direction);

@@ -35,6 +35,10 @@ inline Float4 decode(const Rgba8& texel) {
   return reinterpret_cast<Float4>(_mm_cvtepi32_ps(wide)) * step;
 }
 
+/// The fourth channel alone; the same bits.
+inline float decode_alpha(const glm::vec4& texel) { return texel.a; }
+inline float decode_alpha(const Rgba8& texel) { return static_cast<float>(texel.bytes[3]) * (1.0f / 255.0f); }
+
 /// The texel that holds `value`: exactly, or clamped to [0,1] and rounded to the nearest byte, ties to even. A NaN in
 /// unorm8 becomes 0.
 template <class Texel>

@@ -26,7 +26,7 @@ struct Example {
                add_material(scene, emitter("lamp", glm::vec3(0.25f), glm::vec3(1, 2, 3))));
     Grid grid = unit_grid({13, 14, 21});
     grid.min = glm::vec3(0.0f, 0.0f, -0.125f);
-    surfaces = voxelize(scene, grid, {VoxelOpacity::coverage});
+    surfaces = voxelize(scene, grid, {.opacity = VoxelOpacity::coverage});
     for (size_t i = 0; i < surfaces.size(); ++i) radiance.push_back(glm::vec3(surfaces.voxels[i]) * 0.25f);
     pyramid = mipmap(surfaces, radiance, {});
   }

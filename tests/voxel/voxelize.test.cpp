@@ -261,7 +261,7 @@ TEST_CASE("voxels have the same bits on one thread and on two", "[voxelize]") {
   const Scene scene = triangle_soup(300, 60.0f);
   const auto with = [&](int threads) {
     const ThreadLimit limit(threads);
-    return voxelize(scene, unit_grid(glm::ivec3(60)), {VoxelOpacity::coverage});
+    return voxelize(scene, unit_grid(glm::ivec3(60)), {.opacity = VoxelOpacity::coverage});
   };
   const SurfaceGrid one = with(1), two = with(2);
   CHECK(one.voxels == two.voxels);
@@ -302,7 +302,8 @@ TEST_CASE("opposite sides of a thin sheet cancel to a normal of length zero, and
 
 TEST_CASE("coverage is the projected area over the voxel's, along the mean normal", "[voxelize]") {
   const auto opacity = [](const Mesh& mesh, const glm::ivec3& voxel) {
-    const SurfaceGrid surfaces = voxelize(scene_of(mesh), unit_grid(glm::ivec3(8)), {VoxelOpacity::coverage});
+    const SurfaceGrid surfaces =
+        voxelize(scene_of(mesh), unit_grid(glm::ivec3(8)), {.opacity = VoxelOpacity::coverage});
     return surfaces.albedo[find(surfaces, voxel).value()].a;
   };
   // A floor that ends at 3.25: a quarter of voxel 3.
