@@ -71,8 +71,9 @@ glm::vec4 lookup(const TextureImage& image, const TextureBinding& binding, glm::
   const glm::vec2 corner = glm::floor(position);
   const glm::vec2 f = position - corner;
   const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
-  return glm::mix(glm::mix(texel(x, y), texel(x + 1, y), f.x), glm::mix(texel(x, y + 1), texel(x + 1, y + 1), f.x),
-                  f.y);
+  // Between equal texels exactly their value, which a (1 - t) + b t is not: bytes are rounded down after this.
+  const auto mix = [](const glm::vec4& a, const glm::vec4& b, float t) { return a + t * (b - a); };
+  return mix(mix(texel(x, y), texel(x + 1, y), f.x), mix(texel(x, y + 1), texel(x + 1, y + 1), f.x), f.y);
 }
 
 }  // namespace voxref

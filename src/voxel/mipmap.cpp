@@ -9,24 +9,17 @@ namespace voxref {
 
 namespace {
 
-/// The children of a texel, [x][y][z] by their position in the 2x2x2 block.
+/// The children of a texel; child x + 2 y + 4 z by its position in the 2x2x2 block.
 template <class Texel>
-using Block = std::array<std::array<std::array<Texel, 2>, 2>, 2>;
+using Block = std::array<Texel, 8>;
 
-/// Positions in a block of the four columns along each axis, as the two other coordinates in ascending axis order, in
-/// the order in which the published shaders add them (spec section 4): float sums then have the same bits.
-constexpr int columns[3][4][2] = {
-    {{1, 1}, {1, 0}, {0, 1}, {0, 0}},  // x: (y,z)
-    {{1, 1}, {1, 0}, {0, 0}, {0, 1}},  // y: (x,z)
-    {{1, 1}, {1, 0}, {0, 1}, {0, 0}},  // z: (x,y)
+/// Children at the positive end of the four columns along each axis, in the order in which the published shaders add
+/// them (spec section 4): float sums then have the same bits.
+constexpr size_t columns[3][4] = {
+    {7, 3, 5, 1},  // x: (y,z) = (1,1) (1,0) (0,1) (0,0)
+    {7, 3, 2, 6},  // y: (x,z) = (1,1) (1,0) (0,0) (0,1)
+    {7, 5, 6, 4},  // z: (x,y) = (1,1) (1,0) (0,1) (0,0)
 };
-
-/// The block's texel in column `column` along `axis`, at position `along` on that axis.
-template <class Texel>
-const Texel& in_column(const Block<Texel>& block, int axis, int column, int along) {
-  const auto [p, q] = columns[axis][column];
-  return axis == 0 ? block[along][p][q] : axis == 1 ? block[p][along][q] : block[p][q][along];
-}
 
 /// What a ray towards a face's direction sees of a texel of the level below; the base looks the same from everywhere.
 template <class Texel>
@@ -37,34 +30,48 @@ template <class Texel>
 Float4 seen(const Directional<Texel>& texel, size_t face) {
   return decode(texel[face]);
 }
+template <class Below>
+Block<Float4> seen(const Block<Below>& block, size_t face) {
+  Block<Float4> result;
+  for (size_t i = 0; i < block.size(); ++i) result[i] = seen(block[i], face);
+  return result;
+}
 
-// Rounding never lifts opacity above 1. With the sum of the columns before at most c, a whole number, the next is at
-// most round(round(c + f) + round(1 - f)) where f is the front's opacity; the three roundings together miss c + 1 by at
-// most half a unit in its last place (both addends are multiples of 2^-24, and ties go to the even c + 1).
-template <class Texel, class Below>
-Directional<Texel> filter_anisotropic(const Block<Below>& block) {
-  Directional<Texel> result;
-  for (size_t face = 0; face < 6; ++face) {
-    const int axis = int(face) / 2;
-    const int front = face % 2 == 0 ? 1 : 0;  // towards the negative side a ray meets the higher coordinate first
-    Float4 sum{};
-    for (int column = 0; column < 4; ++column) {
-      const Float4 near = seen(in_column(block, axis, column, front), face);
-      const Float4 far = seen(in_column(block, axis, column, 1 - front), face);
-      sum += near;
-      sum += far * (1.0f - near[3]);
-    }
-    result[face] = encode<Texel>(0.25f * sum);
+/// One face of a texel. Rounding never lifts opacity above 1: with the sum of the columns before at most c, a whole
+/// number, the next is at most round(round(c + f) + round(1 - f)) where f is the front's opacity; the three roundings
+/// together miss c + 1 by at most half a unit in its last place (both addends are multiples of 2^-24, and ties go to
+/// the even c + 1).
+Float4 filter_face(const Block<Float4>& block, size_t face) {
+  const size_t axis = face / 2, along = size_t{1} << axis;
+  const bool negative = face % 2 == 0;  // towards the negative side a ray meets the higher coordinate first
+  Float4 sum{};
+  for (const size_t high : columns[axis]) {
+    const Float4 &near = block[negative ? high : high - along], &far = block[negative ? high - along : high];
+    sum += near;
+    sum += far * (1.0f - near[3]);
   }
+  return 0.25f * sum;
+}
+
+template <class Texel>
+Directional<Texel> filter_anisotropic(const Block<Texel>& base) {
+  const Block<Float4> block = seen(base, 0);  // decoded once for all faces
+  Directional<Texel> result;
+  for (size_t face = 0; face < result.size(); ++face) result[face] = encode<Texel>(filter_face(block, face));
+  return result;
+}
+template <class Texel>
+Directional<Texel> filter_anisotropic(const Block<Directional<Texel>>& texels) {
+  Directional<Texel> result;
+  for (size_t face = 0; face < result.size(); ++face)
+    result[face] = encode<Texel>(filter_face(seen(texels, face), face));
   return result;
 }
 
 template <class Texel, class Below>
-Directional<Texel> filter_isotropic(const Block<Below>& block) {
+Directional<Texel> filter_isotropic(const Block<Below>& texels) {
   Float4 sum{};
-  for (const auto& plane : block)
-    for (const auto& row : plane)
-      for (const Below& texel : row) sum += seen(texel, 0);
+  for (const Below& texel : texels) sum += seen(texel, 0);
   Directional<Texel> result;
   result.fill(encode<Texel>(0.125f * sum));
   return result;
@@ -82,7 +89,8 @@ std::vector<glm::ivec3> parents(const BrickVolume<Below>& fine, const BrickVolum
   return bricks.sorted();
 }
 
-/// Fills the eighth of a coarse brick that one fine brick lies under: `octant` in {0,1}^3.
+/// Fills the eighth of a coarse brick that one fine brick lies under: `octant` in {0,1}^3. The coarse brick is empty
+/// before, and stays so where the fine one is: surfaces leave three of four blocks so.
 template <class Texel, class Below>
 void filter_octant(std::span<const Below, BrickVolume<Below>::texels_per_brick> fine, const glm::ivec3& octant,
                    MipmapFilter filter, std::span<Directional<Texel>, BrickVolume<Texel>::texels_per_brick> coarse) {
@@ -93,10 +101,11 @@ void filter_octant(std::span<const Below, BrickVolume<Below>::texels_per_brick> 
         Block<Below> block;
         for (int i = 0; i < 8; ++i) {
           const glm::ivec3 corner(i & 1, (i >> 1) & 1, i >> 2);
-          block[corner.x][corner.y][corner.z] = fine[BrickVolume<Texel>::offset(2 * glm::ivec3(x, y, z) + corner)];
+          block[size_t(i)] = fine[BrickVolume<Below>::offset(2 * glm::ivec3(x, y, z) + corner)];
         }
+        if (block == Block<Below>{}) continue;
         coarse[BrickVolume<Texel>::offset(half * octant + glm::ivec3(x, y, z))] =
-            filter == MipmapFilter::anisotropic ? filter_anisotropic<Texel>(block) : filter_isotropic<Texel>(block);
+            filter == MipmapFilter::anisotropic ? filter_anisotropic(block) : filter_isotropic<Texel>(block);
       }
 }
 

@@ -50,6 +50,7 @@ class DilatedTriangle {
 
   /// Rows of pixels that it may cover: [first, second), inside the view.
   std::array<int, 2> rows() const { return rows_; }
+  size_t most_per_row() const { return size_t(columns_[1] - columns_[0]); }  ///< pixels
   /// Calls visit(fragment) for its pixels in rows [begin, end), row by row.
   template <class Visit>
   void for_each_fragment(int begin, int end, Visit&& visit) const;

@@ -15,6 +15,11 @@ struct RunningAverage8 {
   /// Averages `color` (1 is 255) in: c = floor((c k + V) / (k + 1)). Every step rounds down, so that the result depends
   /// on the order; what lies above 255 loses its upper bits and wraps.
   void add(const glm::vec3& color) {
+    if (count == 0) {  // as below, but most voxels get one fragment, and no division
+      value = {low_byte(color.x * 255.0f), low_byte(color.y * 255.0f), low_byte(color.z * 255.0f)};
+      count = 1;
+      return;
+    }
     const float before = float(count), after = before + 1.0f;
     for (int channel = 0; channel < 3; ++channel) {
       const float sum = float(value[size_t(channel)]) * before + color[channel] * 255.0f;

@@ -5,17 +5,22 @@
 #include <glm/common.hpp>
 #include <limits>
 
+#include "cone/lookup.h"
+
 namespace voxref {
 
 namespace {
 
-/// Steps of one voxel from `position` that stay inside the block of `side` cells around `cell`.
-int steps_inside(const glm::vec3& position, const glm::vec3& inverse_direction, const glm::ivec3& cell, int side) {
+/// Steps of one voxel from `position` that stay inside the cube of blocks that reaches gap - 1 blocks around the one of
+/// `cell`. @param gap at least 1
+int steps_inside(const glm::vec3& position, const glm::vec3& inverse_direction, const glm::ivec3& cell, int side,
+                 int gap) {
   constexpr float rounding = 0.01f;  // voxels; far above that of positions, far below a step
+  const float ahead = float(gap * side), behind = float((gap - 1) * side);
   float shortest = std::numeric_limits<float>::max();
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = float(cell[axis] / side * side) - position[axis];
-    const float to_end = inverse_direction[axis] > 0.0f ? low + float(side) : low;
+    const float low = float(cell[axis] & ~(side - 1)) - position[axis];
+    const float to_end = inverse_direction[axis] > 0.0f ? low + ahead : low - behind;
     shortest = std::min(shortest, to_end * inverse_direction[axis]);  // infinite or NaN where it does not move
   }
   return std::max(1, int(shortest - rounding));
@@ -31,19 +36,54 @@ ShadowVolume::ShadowVolume(const SurfaceGrid& surfaces)
   for (size_t i = 0; i < surfaces.size(); ++i) {
     if (surfaces.albedo[i].a == 0.0f) continue;
     const glm::ivec3& v = surfaces.voxels[i];
-    for (int corner = 0; corner < 8; ++corner) mark(v + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2));
+    for (int yz = 0; yz < 4; ++yz) mark_two(v + glm::ivec3(0, yz & 1, yz >> 1));
     voxels_[slots_[block_index(v)]][size_t(v.z % side)] |= uint64_t{1} << (v.x % side + side * (v.y % side));
   }
+  measure_gaps();
 }
 
-void ShadowVolume::mark(const glm::ivec3& cell) {
+ShadowVolume::Block& ShadowVolume::block_of(const glm::ivec3& cell) {
   uint32_t& slot = slots_[block_index(cell)];
   if (slot == absent) {
     slot = uint32_t(cells_.size());
     cells_.emplace_back();
     voxels_.emplace_back();
   }
-  cells_[slot][size_t(cell.z % side)] |= uint64_t{1} << (cell.x % side + side * (cell.y % side));
+  return cells_[slot];
+}
+
+void ShadowVolume::mark_two(const glm::ivec3& cell) {
+  const int x = cell.x % side, row = side * (cell.y % side);
+  const size_t slice = size_t(cell.z % side);
+  if (x < side - 1) {
+    block_of(cell)[slice] |= uint64_t{3} << (x + row);
+    return;
+  }
+  block_of(cell)[slice] |= uint64_t{1} << (x + row);
+  block_of(cell + glm::ivec3(1, 0, 0))[slice] |= uint64_t{1} << row;
+}
+
+// The distance transform of Rosenfeld and Pfaltz 1968: one pass forwards that looks at the neighbours before, one
+// backwards that looks at those behind; exact in the maximum norm.
+void ShadowVolume::measure_gaps() {
+  gaps_.resize(slots_.size());
+  std::ranges::transform(slots_, gaps_.begin(), [](uint32_t slot) { return uint8_t(slot == absent ? 255 : 0); });
+  const auto shorten = [&](const glm::ivec3& block, int sign) {
+    const size_t at = block_index(side * block);
+    int gap = gaps_[at];
+    for (int i = 0; i < 13 && gap > 1; ++i) {  // the half of the 26 neighbours that comes earlier in z, y, x
+      const glm::ivec3 neighbor = block + sign * glm::ivec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      if (glm::clamp(neighbor, glm::ivec3(0), blocks_ - 1) == neighbor)
+        gap = std::min(gap, gaps_[block_index(side * neighbor)] + 1);
+    }
+    gaps_[at] = uint8_t(gap);
+  };
+  const int count = int(slots_.size());
+  const auto block = [&](int i) {
+    return glm::ivec3(i % blocks_.x, i / blocks_.x % blocks_.y, i / blocks_.x / blocks_.y);
+  };
+  for (int i = 0; i < count; ++i) shorten(block(i), 1);
+  for (int i = count - 1; i >= 0; --i) shorten(block(i), -1);
 }
 
 bool ShadowVolume::occupied(const glm::ivec3& voxel) const {
@@ -71,11 +111,11 @@ float ShadowVolume::visibility(const glm::vec3& from, const glm::vec3& direction
     const glm::vec3 p = direction * t + from;
     if (!(p.x >= 0.0f && p.y >= 0.0f && p.z >= 0.0f && p.x <= end.x && p.y <= end.y && p.z <= end.z)) break;
     const glm::vec3 texel = p * resolution_ - 0.5f;
-    // At least -0.5, so that adding 1 makes truncation the floor; below 0 the edge's texel alone is read.
-    const glm::ivec3 cell(texel + 1.0f);
-    const uint32_t slot = slots_[block_index(cell)];
+    const glm::ivec3 cell(floor_to_int(texel.x) + 1, floor_to_int(texel.y) + 1, floor_to_int(texel.z) + 1);
+    const size_t block = block_index(cell);
+    const uint32_t slot = slots_[block];
     if (slot == absent) {
-      t += float(steps_inside(texel + 1.0f, inverse_direction, cell, side)) * step;
+      t += float(steps_inside(texel + 1.0f, inverse_direction, cell, side, gaps_[block])) * step;
       continue;
     }
     if (hits(cells_[slot], cell, texel - glm::vec3(cell - 1))) {

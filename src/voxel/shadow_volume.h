@@ -25,7 +25,10 @@ class ShadowVolume {
   using Block = std::array<uint64_t, side>;
   static constexpr uint32_t absent = ~0u;
 
-  void mark(const glm::ivec3& cell);
+  /// Marks cells (x, y, z) and (x + 1, y, z).
+  void mark_two(const glm::ivec3& cell);
+  Block& block_of(const glm::ivec3& cell);
+  void measure_gaps();
   size_t block_index(const glm::ivec3& cell) const {
     return size_t(cell.x / side) +
            size_t(blocks_.x) * (size_t(cell.y / side) + size_t(blocks_.y) * size_t(cell.z / side));
@@ -43,6 +46,7 @@ class ShadowVolume {
   // Cell c is what a filter reads that lies between the centres of voxels c - 1 and c along each axis; it is marked
   // when any of the eight is occupied. So the march reads one bit per sample, and skips blocks without any.
   std::vector<uint32_t> slots_;
+  std::vector<uint8_t> gaps_;  // blocks to the nearest one that is not absent, in the maximum norm; at most 255
   std::vector<Block> cells_, voxels_;
 };
 

@@ -1,0 +1,108 @@
+#include "voxel/raster_fragments.h"
+
+#include <algorithm>
+#include <atomic>
+#include <glm/geometric.hpp>
+
+#include "parallel.h"
+#include "voxel/raster.h"
+
+namespace voxref {
+
+namespace {
+
+/// Rows of one triangle's pixels: large triangles are cut, so that several threads can draw them.
+struct Rows {
+  uint32_t triangle;
+  int begin, end;
+  size_t most_fragments;
+};
+constexpr int rows_per_task = 16;
+constexpr size_t tasks_per_chunk = 32;  // small triangles are a task each
+
+/// Texture, factors and the rest of what the published fragment shader does.
+class FragmentShader {
+ public:
+  FragmentShader(const Scene& scene, const Grid& grid) : scene_(scene), grid_(grid) {
+    for (const Material& material : scene.materials) {
+      bindings_.push_back(material.base_color_texture);
+      bindings_.back().srgb = false;
+    }
+  }
+
+  RasterTriangle triangle(uint32_t index) const {
+    RasterTriangle result;
+    const auto& uv = scene_.uv[size_t(bindings_[scene_.triangle_materials[index]].uv_set)];
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t vertex = scene_.triangles[index][int(i)];
+      result.positions[i] = scene_.positions[vertex];
+      result.normals[i] = scene_.normals[vertex];
+      result.uv[i] = uv.empty() ? glm::vec2(0.0f) : uv[vertex];
+    }
+    return result;
+  }
+
+  /// Adds what the pixel writes, if anything.
+  void operator()(uint32_t triangle, const RasterFragment& pixel, std::vector<VoxelFragment>& written) const {
+    if (!grid_.contains(pixel.voxel)) return;
+    const uint32_t index = scene_.triangle_materials[triangle];
+    const Material& material = scene_.materials[index];
+    const glm::vec4 texel = texture(bindings_[index], pixel.uv);
+    const float opacity = material.base_color.a * texel.a;
+    if (!(opacity > 0.0f)) return;
+    const glm::vec3 color(texel);
+    written.push_back({pixel.voxel, diffuse(material, pixel.uv) * color * opacity,
+                       0.5f * glm::normalize(pixel.normal) + 0.5f, material.emission * color});
+  }
+
+ private:
+  glm::vec4 texture(const TextureBinding& binding, const glm::vec2& uv) const {
+    return binding ? lookup(scene_.images[size_t(binding.image)], binding, uv) : glm::vec4(1.0f);
+  }
+  /// Kd without its texture: of metals, which the published renderer does not know, what phong_material makes of them.
+  glm::vec3 diffuse(const Material& material, const glm::vec2& uv) const {
+    const glm::vec3 base(material.base_color);
+    if (material.workflow == Workflow::specular_glossiness) return base;
+    return base * (1.0f - material.metallic * texture(material.metallic_roughness_texture, uv).b);
+  }
+
+  const Scene& scene_;
+  const Grid& grid_;
+  std::vector<TextureBinding> bindings_;  // of the base colour, one per material
+};
+
+}  // namespace
+
+std::vector<std::vector<VoxelFragment>> draw_fragments(const Scene& scene, const Grid& grid, bool dynamic,
+                                                       const Progress& progress) {
+  const RasterViews views(grid);
+  const FragmentShader shader(scene, grid);
+  std::vector<Rows> tasks;
+  for (const Object& object : scene.objects)
+    if (object.dynamic == dynamic)
+      for (uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
+        if (const auto triangle = DilatedTriangle::make(shader.triangle(t), views))
+          for (int row = triangle->rows()[0]; row < triangle->rows()[1]; row += rows_per_task)
+            tasks.push_back(
+                {t, row, std::min(row + rows_per_task, triangle->rows()[1]), triangle->most_per_row() * rows_per_task});
+
+  std::vector<std::vector<VoxelFragment>> chunks((tasks.size() + tasks_per_chunk - 1) / tasks_per_chunk);
+  std::atomic<size_t> done = 0;
+  parallel_for(tasks.size(), tasks_per_chunk, [&](size_t begin, size_t end) {
+    progress.check();
+    std::vector<VoxelFragment>& written = chunks[begin / tasks_per_chunk];
+    size_t most = 0;
+    for (size_t i = begin; i < end; ++i) most += tasks[i].most_fragments;
+    written.reserve(most);  // pages that are not used are never touched
+    for (size_t i = begin; i < end; ++i) {
+      const Rows& rows = tasks[i];
+      const auto triangle = DilatedTriangle::make(shader.triangle(rows.triangle), views);
+      triangle->for_each_fragment(rows.begin, rows.end,
+                                  [&](const RasterFragment& pixel) { shader(rows.triangle, pixel, written); });
+    }
+    progress("voxelize", double(done += end - begin) / double(tasks.size()));
+  });
+  return chunks;
+}
+
+}  // namespace voxref
