@@ -113,8 +113,8 @@ void validate(const Settings& settings) {
   };
   const bool raster = settings.voxelize.method == VoxelizeMethod::raster;
   require(!raster || settings.grid.cubic, "voxelize.method", "raster draws into a cube: it needs grid.cubic=true");
-  require(raster == (settings.voxelize.average == VoxelAverage::running_floor8), "voxelize.average",
-          "area goes with voxelize.method=exact, running_floor8 with raster");
+  require(raster || settings.voxelize.average == VoxelAverage::area, "voxelize.average",
+          "running_floor8 averages the fragments of voxelize.method=raster");
   require(!raster || settings.voxelize.opacity == VoxelOpacity::occupied, "voxelize.opacity",
           "coverage is known to voxelize.method=exact only");
 }

@@ -249,6 +249,7 @@ TEST_CASE("values that contradict each other are refused by name", "[settings]")
   CHECK(contains(contradiction("radiometric", "voxelize.average=running_floor8"), "voxelize.average"));
   CHECK(contains(contradiction("villegas2016", "voxelize.opacity=coverage"), "voxelize.opacity"));
   CHECK(contains(contradiction("radiometric", "pixel.shadow=visibility"), "cone.opacity=raw"));
+  CHECK(contradiction("villegas2016", "voxelize.average=area") == "");
   CHECK(contradiction("villegas2016", "storage=float32") == "");
   CHECK(contradiction("radiometric", "storage=unorm8") == "");
 }

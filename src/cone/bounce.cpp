@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "cone/raw_bounce.h"
@@ -108,7 +109,7 @@ int bounces_left(const Sums& sums, double gain) {
 }
 
 /// One bounce: replaces `radiance` by direct + what is reflected of what `gather` sees.
-template <class Gather>
+template <class Texel, class Gather>
 Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, const Gather& gather,
                    std::vector<glm::vec3>& radiance, const BounceProgress& progress) {
   std::vector<Sums> partial((surfaces.size() + grain - 1) / grain);  // merged by index: the same bits for any threads
@@ -118,7 +119,7 @@ Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direc
     Sums& sums = partial[begin / grain];
     for (size_t i = begin; i < end; ++i) {
       const glm::vec3 old = radiance[i];
-      radiance[i] = direct[i] + gather.reflected(i);
+      radiance[i] = stored<Texel>(direct[i] + gather.reflected(i));
       sums.total += luminance(radiance[i]);
       sums.change += double(luminance(radiance[i])) - luminance(old);
     }
@@ -152,12 +153,14 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
   // Each bounce takes over the pyramid's memory and frees it before the next is made: only one is held at a time.
   const auto gather = [&](const BounceProgress& so_far) {
     if (options.cones == published_cones)
-      return gather_bounce(surfaces, direct, RawGather<Texel>(surfaces, std::move(result.pyramid), options),
-                           result.radiance, so_far);
-    return gather_bounce(surfaces, direct,
-                         MediumGather(surfaces, make_medium(std::move(result.pyramid)), options, cone, background),
-                         result.radiance, so_far);
+      return gather_bounce<Texel>(surfaces, direct, RawGather<Texel>(surfaces, std::move(result.pyramid), options),
+                                  result.radiance, so_far);
+    return gather_bounce<Texel>(
+        surfaces, direct, MediumGather(surfaces, make_medium(std::move(result.pyramid)), options, cone, background),
+        result.radiance, so_far);
   };
+  // Bytes cannot hold more than 1, and the published cones clamp what arrives: then light does not grow for ever.
+  const bool bounded = std::is_same_v<Texel, Rgba8> || options.cones == published_cones;
   BounceProgress so_far(progress);
   const Progress silent{{}, progress.cancel};  // filtering is a part of the bounce
   double previous = 0.0;
@@ -169,7 +172,7 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
     ++result.bounces;
 
     if (previous > 0.0) result.gain = sums.change / previous;
-    if (result.gain >= 1.0)
+    if (result.gain >= 1.0 && !bounded)
       throw Error("bounce.count", "light grows from bounce to bounce (loop gain " + std::to_string(result.gain) +
                                       " after " + std::to_string(result.bounces) +
                                       " bounces), so that there is no limit to gather; is an albedo 1?");

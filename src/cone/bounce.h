@@ -10,8 +10,8 @@
 namespace voxref {
 
 struct BounceOptions {
-  std::optional<int> count;           ///< 0 to 1000; none: until one more would add less than 1 % of the total
-  int cones = 6;                      ///< over the hemisphere of each voxel, or published_cones
+  std::optional<int> count;             ///< 0 to 1000; none: until one more would add less than 1 % of the total
+  int cones = 6;                        ///< over the hemisphere of each voxel, or published_cones
   std::optional<float> max_distance{};  ///< of the published cones, in the grid's longest sides; none: to the box's end
 };
 
@@ -27,7 +27,7 @@ using BounceResult = BasicBounceResult<glm::vec4>;
 /// L_0 = `direct`; L_(k+1) = L_0 + albedo/pi E(L_k), gathered with cones at every occupied voxel and filtered again
 /// after each. Spec section 6. A voxel gathers over the hemisphere of its mean normal; where opposite normals cancel
 /// (shorter than two_sided_length) over both hemispheres, and takes the mean. Additions are compared as sums of
-/// luminance over the voxels. @throws Error when they do not shrink (gain at or above 1)
+/// luminance over the voxels. @throws Error when they do not shrink (gain at or above 1) though nothing bounds them
 BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direct, const BounceOptions& options,
                     const ConeOptions& cone, const MipmapOptions& mipmap, const glm::vec3& background,
                     const Progress& progress = {});

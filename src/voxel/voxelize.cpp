@@ -93,8 +93,10 @@ SurfaceGrid voxelize_static(const Scene& scene, const Grid& grid, const Voxelize
 SurfaceGrid add_dynamic(const Scene& scene, SurfaceGrid fixed, const VoxelizeOptions& options,
                         const Progress& progress) {
   if (std::ranges::none_of(scene.objects, &Object::dynamic)) return fixed;
-  if (options.method == VoxelizeMethod::raster) return voxelize_raster(scene, fixed, true, options, progress);
-  const SurfaceGrid moving = voxelize_exact(scene, fixed.grid, true, options, progress);
+  if (options.average == VoxelAverage::running_floor8) return voxelize_raster(scene, fixed, true, options, progress);
+  const SurfaceGrid moving = options.method == VoxelizeMethod::exact
+                                 ? voxelize_exact(scene, fixed.grid, true, options, progress)
+                                 : voxelize_raster(scene, fixed, true, options, progress);
   return AreaMerge(fixed, moving, options.static_wins)();
 }
 

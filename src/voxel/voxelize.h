@@ -24,7 +24,7 @@ enum class VoxelOpacity : uint8_t {
 
 struct VoxelizeOptions {
   VoxelizeMethod method = VoxelizeMethod::exact;
-  VoxelAverage average = VoxelAverage::area;  ///< area goes with exact, running_floor8 with raster
+  VoxelAverage average = VoxelAverage::area;  ///< running_floor8 goes with raster only
   VoxelOpacity opacity = VoxelOpacity::occupied;
   bool static_wins = false;  ///< dynamic surfaces leave voxels of static ones alone; else they share them
 };

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <span>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "parallel.h"
@@ -15,7 +16,20 @@ namespace voxref {
 
 namespace {
 
-/// What a voxel holds while fragments are averaged into it.
+/// What a voxel holds while fragments are averaged into it: the plain mean, in which each pixel counts as one face.
+struct PlainMean {
+  glm::dvec3 albedo{0.0}, normal{0.0}, emission{0.0};  ///< sums
+  uint32_t count = 0;
+
+  void add(const VoxelFragment& fragment) {
+    albedo += fragment.albedo;
+    normal += fragment.normal;
+    emission += fragment.emission;
+    ++count;
+  }
+};
+
+/// The same in the published shaders' bytes.
 struct VoxelAverages {
   RunningAverage8 albedo, normal, emission;
 
@@ -102,22 +116,35 @@ VoxelAverages restored(const SurfaceGrid& surfaces, size_t i) {
 }
 
 /// An averaged voxel.
+template <class Averages>
 struct Voxel {
   glm::ivec3 index;
-  VoxelAverages averages;
+  Averages averages;
   bool fixed;  ///< something static is in it
 };
 
 bool earlier(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
 
+/// A layer's fragments, which are sorted by voxel, averaged.
+std::vector<Voxel<PlainMean>> mean_layer(std::span<const KeyedFragment> fragments) {
+  std::vector<Voxel<PlainMean>> voxels;
+  for (const KeyedFragment& keyed : fragments) {
+    const VoxelFragment& fragment = *keyed.fragment;
+    if (voxels.empty() || voxels.back().index != fragment.voxel) voxels.push_back({fragment.voxel, {}, false});
+    voxels.back().averages.add(fragment);
+  }
+  return voxels;
+}
+
 /// Merges what was there before with a layer's fragments, which are sorted by voxel. The voxels come out sorted too.
-std::vector<Voxel> average_layer(const SurfaceGrid& before, size_t k, std::span<const KeyedFragment> fragments,
-                                 const VoxelizeOptions& options) {
+std::vector<Voxel<VoxelAverages>> average_layer(const SurfaceGrid& before, size_t k,
+                                                std::span<const KeyedFragment> fragments,
+                                                const VoxelizeOptions& options) {
   const glm::ivec3 end_of_layer(0, 0, int(k + 1) * slices_per_layer);
   const auto first = std::lower_bound(before.voxels.begin(), before.voxels.end(),
                                       glm::ivec3(0, 0, int(k) * slices_per_layer), earlier);
   size_t old = size_t(first - before.voxels.begin());
-  std::vector<Voxel> voxels;
+  std::vector<Voxel<VoxelAverages>> voxels;
   voxels.reserve(fragments.size());
   const auto copy_before = [&](const glm::ivec3& index) {
     for (; old < before.size() && earlier(before.voxels[old], index); ++old)
@@ -136,25 +163,54 @@ std::vector<Voxel> average_layer(const SurfaceGrid& before, size_t k, std::span<
   return voxels;
 }
 
-void resize(SurfaceGrid& surfaces, size_t count) {
+void store(SurfaceGrid& surfaces, size_t i, const Voxel<VoxelAverages>& voxel) {
+  const VoxelAverages& averages = voxel.averages;
+  surfaces.fragments[i] = averages.albedo.count;
+  surfaces.albedo[i] = glm::vec4(decoded(averages.albedo), averages.albedo.empty() ? 0.0f : 1.0f);
+  surfaces.normal[i] = 2.0f * decoded(averages.normal) - 1.0f;
+  surfaces.emission[i] = decoded(averages.emission);
+}
+
+void store(SurfaceGrid& surfaces, size_t i, const Voxel<PlainMean>& voxel) {
+  const PlainMean& sums = voxel.averages;
+  const double count = sums.count;
+  surfaces.area[i] = surfaces.grid.voxel * surfaces.grid.voxel * float(count);
+  surfaces.albedo[i] = glm::vec4(sums.albedo / count, 1.0f);
+  surfaces.normal[i] = glm::vec3(2.0 * sums.normal / count - 1.0);
+  surfaces.emission[i] = glm::vec3(sums.emission / count);
+}
+
+/// The layers' voxels one after the other. @param dynamic whether some may be dynamic
+template <class Averages>
+SurfaceGrid joined(const Grid& grid, const std::vector<std::vector<Voxel<Averages>>>& layers, bool dynamic) {
+  std::vector<size_t> first(layers.size() + 1);
+  for (size_t k = 0; k < layers.size(); ++k) first[k + 1] = first[k] + layers[k].size();
+  const size_t count = first.back();
+  SurfaceGrid surfaces;
+  surfaces.grid = grid;
   surfaces.voxels.resize(count);
-  surfaces.fragments.resize(count);
+  if constexpr (std::is_same_v<Averages, PlainMean>)
+    surfaces.area.resize(count);
+  else
+    surfaces.fragments.resize(count);
+  if (dynamic) surfaces.dynamic.resize(count);
   surfaces.albedo.resize(count);
   surfaces.normal.resize(count);
   surfaces.centroid.resize(count);
   surfaces.emission.resize(count);
+  parallel_for(layers.size(), 1, [&](size_t k, size_t) {
+    size_t i = first[k];
+    for (const Voxel<Averages>& voxel : layers[k]) {
+      surfaces.voxels[i] = voxel.index;
+      if (dynamic) surfaces.dynamic[i] = !voxel.fixed;
+      surfaces.centroid[i] = grid.center(voxel.index);
+      store(surfaces, i++, voxel);
+    }
+  });
+  return surfaces;
 }
 
-void store(SurfaceGrid& surfaces, size_t i, const Voxel& voxel) {
-  const VoxelAverages& averages = voxel.averages;
-  surfaces.voxels[i] = voxel.index;
-  surfaces.fragments[i] = averages.albedo.count;
-  if (!surfaces.dynamic.empty()) surfaces.dynamic[i] = !voxel.fixed;
-  surfaces.albedo[i] = glm::vec4(decoded(averages.albedo), averages.albedo.empty() ? 0.0f : 1.0f);
-  surfaces.normal[i] = 2.0f * decoded(averages.normal) - 1.0f;
-  surfaces.centroid[i] = surfaces.grid.center(voxel.index);
-  surfaces.emission[i] = decoded(averages.emission);
-}
+bool dark(const glm::vec3& emission) { return emission == glm::vec3(0.0f); }
 
 }  // namespace
 
@@ -164,24 +220,20 @@ SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool 
   assert(grid.size.x == grid.size.y && grid.size.x == grid.size.z);
   const std::vector<std::vector<VoxelFragment>> drawn = draw_fragments(scene, grid, dynamic, progress);
   Layers layers(drawn, grid.size);
-  std::vector<std::vector<Voxel>> averaged(layers.count());
-  parallel_for(layers.count(), 1, [&](size_t k, size_t) {
-    progress.check();
-    sort_by_voxel(layers[k], grid.size);
-    averaged[k] = average_layer(before, k, layers[k], options);
-  });
-
-  std::vector<size_t> first(layers.count() + 1);
-  for (size_t k = 0; k < layers.count(); ++k) first[k + 1] = first[k] + averaged[k].size();
-  SurfaceGrid surfaces;
-  surfaces.grid = grid;
-  resize(surfaces, first.back());
-  if (dynamic) surfaces.dynamic.resize(first.back());
-  parallel_for(layers.count(), 1, [&](size_t k, size_t) {
-    for (size_t i = 0; i < averaged[k].size(); ++i) store(surfaces, first[k] + i, averaged[k][i]);
-  });
-  if (std::ranges::all_of(surfaces.emission, [](const glm::vec3& e) { return e == glm::vec3(0.0f); }))
-    surfaces.emission = {};
+  const auto average = [&](auto&& average_one) {
+    std::vector<decltype(average_one(size_t{0}))> averaged(layers.count());
+    parallel_for(layers.count(), 1, [&](size_t k, size_t) {
+      progress.check();
+      sort_by_voxel(layers[k], grid.size);
+      averaged[k] = average_one(k);
+    });
+    return averaged;
+  };
+  if (options.average == VoxelAverage::area)
+    return joined(grid, average([&](size_t k) { return mean_layer(layers[k]); }), false);
+  SurfaceGrid surfaces =
+      joined(grid, average([&](size_t k) { return average_layer(before, k, layers[k], options); }), dynamic);
+  if (std::ranges::all_of(surfaces.emission, dark)) surfaces.emission = {};
   return surfaces;
 }
 

@@ -36,11 +36,12 @@ bool same(const SurfaceGrid& a, const SurfaceGrid& b) {
 }  // namespace
 
 TEST_CASE("Stepping through frames gives the voxels of building each frame from nothing", "[voxelize]") {
-  for (const char* name : {"radiometric", "villegas2016"}) {
-    VoxelizeOptions options = profile(name).voxelize;
+  VoxelizeOptions plain_mean = profile("villegas2016").voxelize;
+  plain_mean.average = VoxelAverage::area;
+  for (VoxelizeOptions options : {profile("radiometric").voxelize, profile("villegas2016").voxelize, plain_mean}) {
     for (const bool static_wins : {true, false}) {
       options.static_wins = static_wins;
-      CAPTURE(name, static_wins);
+      CAPTURE(int(options.method), int(options.average), static_wins);
       const SurfaceGrid fixed = voxelize_static(frame(0), grid, options);
       for (int k = 0; k < 6; ++k) {
         CAPTURE(k);

@@ -120,6 +120,24 @@ TEST_CASE("Triangles average in draw order", "[voxelize_raster]") {
   CHECK(stacked({1.0f, 0.0f, 0.0f}) == Approx(84));
 }
 
+TEST_CASE("Averaged by area, fragments have their plain mean, which does not drift", "[voxelize_raster]") {
+  VoxelizeOptions plain = raster;
+  plain.average = VoxelAverage::area;
+  Scene scene;
+  for (int i = 0; i < 64; ++i)
+    add_object(scene, "wall", wall(5.5f, 2.25f, 9.75f),
+               add_material(scene, emitter("", glm::vec3(float(i % 8) / 10.0f), glm::vec3(2.0f * float(i % 2)))));
+  const glm::ivec3 once(8, 3, 5);
+  const SurfaceGrid mean = voxelize(scene, grid, plain), bytes = voxelize(scene, grid, raster);
+  REQUIRE(mean.voxels == bytes.voxels);
+  const size_t i = find(mean, once);
+  CHECK(mean.albedo[i].r == Approx(0.35));
+  CHECK(mean.emission[i].r == Approx(1.0));
+  CHECK(mean.normal[i] == glm::vec3(0, 0, 1));
+  CHECK(mean.area[i] == 64.0f);
+  CHECK(bytes.albedo[i].r < 0.35 - 10.0 / 255.0);
+}
+
 TEST_CASE("Raster voxels have the same bits on one thread and on many", "[voxelize_raster]") {
   Scene scene;
   for (int i = 0; i < 40; ++i) {
