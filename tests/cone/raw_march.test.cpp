@@ -98,7 +98,7 @@ TEST_CASE("Steps grow by a constant factor, levels by its logarithm", "[raw_marc
     const double distance = 2.0 * std::pow(1.0 + 0.57735, double(i));  // s += 0.5 x 2 s tan
     CHECK(steps[i].distance == Approx(distance).epsilon(1e-5));
     const double level = std::min(std::log2(2.0 * 0.57735 * distance / 2.0), 3.0);
-    CHECK(steps[i].level + steps[i].fraction == Approx(level).epsilon(1e-4));
+    CHECK(steps[i].level + double(steps[i].fraction) == Approx(level).epsilon(1e-4));
     CHECK(steps[i].occlusion == 1.0f);
   }
   CHECK(steps.front().level == 0);  // d = 1.15 w lies between the base and the first level

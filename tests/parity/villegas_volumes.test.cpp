@@ -23,7 +23,8 @@ void for_each_case(Test&& test) {
 }
 
 void check_volumes(const GpuCase& gpu, const std::filesystem::path& folder) {
-  for (const VolumeEntry& volume : VolumeFolder(folder).entries()) {
+  const VolumeFolder ours(folder);
+  for (const VolumeEntry& volume : ours.entries()) {
     const std::string file = volume.name + ".npy";
     const VolumeDifference d = difference(folder / file, gpu.folder / "volumes" / file);
     CAPTURE(volume.name, d.first, d.largest);

@@ -289,7 +289,7 @@ TEST_CASE("opposite sides of a thin sheet cancel to a normal of length zero, and
   Mesh sheet = quad({2, 4.5f, 2}, {2, 4.5f, 10}, {10, 4.5f, 10}, {10, 4.5f, 2});
   append(sheet, flipped(sheet));
   for (const VoxelOpacity opacity : {VoxelOpacity::occupied, VoxelOpacity::coverage}) {
-    const SurfaceGrid surfaces = voxelize(scene_of(sheet), unit_grid(glm::ivec3(12)), {opacity});
+    const SurfaceGrid surfaces = voxelize(scene_of(sheet), unit_grid(glm::ivec3(12)), {.opacity = opacity});
     REQUIRE(surfaces.size() == 64);
     for (size_t i = 0; i < surfaces.size(); ++i) {
       CHECK(surfaces.normal[i] == glm::vec3(0));
