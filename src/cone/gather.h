@@ -19,11 +19,15 @@ struct AoOptions {
   float falloff = 800.0f;  ///< opacity at distance r counts 1 / (1 + falloff r / grid's longest side)
 };
 
+/// How far a cone's apex stands off a surface with this normal (unit), in voxels.
+float apex_height(const glm::vec3& normal, const ConeOptions& options);
+
 /// Where cones start.
 struct GatherPoint {
   glm::vec3 position{0.0f};          ///< world
   glm::vec3 geometric_normal{0.0f};  ///< unit; the apex stands off along it, and nothing comes from behind it
   glm::vec3 shading_normal{0.0f};    ///< unit; the cones are arranged around it
+  glm::vec3 aside{0.0f};             ///< world, tangential: moves the apex away from surfaces nearby
 };
 
 struct DiffuseGather {
