@@ -79,7 +79,7 @@ ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View&
   surfaces = {};  // the image needs none of them
   radiance = {};
   result.image = timed(seconds.cone_trace, [&] {
-    const Medium medium = make_medium(std::move(pyramid));
+    const Medium medium = make_medium(std::move(pyramid), settings.mipmap.filter);
     return render_cones(scene, caster, medium, view, settings.render, progress);
   });
   if (folder) folder->finish();  // not before: a run that fails or is stopped leaves no volumes

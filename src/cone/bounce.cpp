@@ -112,7 +112,7 @@ BounceResult bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> dire
   int left = options.count.value_or(usual_bounces);
   for (const int most = options.count.value_or(most_bounces); result.bounces < most;) {
     so_far.begin(left);
-    Medium medium = make_medium(std::move(result.pyramid));
+    Medium medium = make_medium(std::move(result.pyramid), mipmap_options.filter);
     const Sums sums = gather_bounce(surfaces, direct, medium, cones, cone, background, result.radiance, so_far);
     medium = {};  // before the next pyramid is made: only one is held at a time
     result.pyramid = mipmap(surfaces, result.radiance, mipmap_options, silent);

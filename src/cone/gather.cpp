@@ -57,8 +57,7 @@ glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const 
   const glm::vec3 mirrored = glm::reflect(-to_viewer, point.shading_normal);
   if (glm::dot(mirrored, point.geometric_normal) <= 0.0f) return glm::vec3(0.0f);
   const Apex apex = apex_over(medium, point, options);
-  return march(medium, apex.position, mirrored, specular_tan_half_angle(alpha), apex.own,
-               {options.step, background})
+  return march(medium, apex.position, mirrored, specular_tan_half_angle(alpha), apex.own, {options.step, background})
       .radiance;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "cone/clearance.h"
 #include "parallel.h"
 #include "scene/surface.h"
 
@@ -137,30 +138,9 @@ class Renderer {
   }
 
   GatherPoint gather_point(const SurfacePoint& point) const {
-    return {point.position, point.geometric_normal, point.shading_normal, aside(point)};
-  }
-
-  /// How far the apex of a pixel's cones must move along the surface to stand off what else is near, as far as it
-  /// stands off the surface itself: beside a concave edge it would lie within the other wall's voxels, and all cones
-  /// would see nothing but that wall.
-  glm::vec3 aside(const SurfacePoint& point) const {
-    const glm::vec3& normal = point.geometric_normal;
-    const float voxel = medium_.texels.grid.voxel;
-    const glm::mat3 frame = frame_around(normal);
-    glm::vec3 sum(0.0f);
-    for (const glm::vec3& along : {frame[0], -frame[0], frame[1], -frame[1]}) {
-      Ray ray = caster_.leave(point.position, normal, along);
-      ray.tmax = 4.0f * options_.cone.start * voxel;
-      const Hit hit = caster_.closest(ray);
-      if (!hit) continue;
-      glm::vec3 wall = surfaces_.point(hit, -along).geometric_normal;
-      if (glm::dot(wall, along) > 0.0f) wall = -wall;
-      const float distance = glm::dot(sum, wall) - hit.t * glm::dot(wall, along);
-      const float missing = apex_height(wall, options_.cone) * voxel - distance;
-      const glm::vec3 tangential = wall - glm::dot(wall, normal) * normal;
-      if (missing > 0.0f) sum += missing * tangential;
-    }
-    return sum;
+    return {
+        point.position, point.geometric_normal, point.shading_normal,
+        clearance(scene_, caster_, point.position, point.geometric_normal, options_.cone, medium_.texels.grid.voxel)};
   }
 
   const Scene& scene_;

@@ -73,6 +73,17 @@ class BrickVolume {
     texels_.assign(bricks.size() * texels_per_brick, Texel{});
   }
 
+  /// Coordinates of the allocated bricks, by slot.
+  std::vector<glm::ivec3> bricks() const {
+    std::vector<glm::ivec3> result(brick_count());
+    size_t index = 0;
+    for (int z = 0; z < bricks_.z; ++z)
+      for (int y = 0; y < bricks_.y; ++y)
+        for (int x = 0; x < bricks_.x; ++x, ++index)
+          if (slots_[index] != absent) result[slots_[index]] = {x, y, z};
+    return result;
+  }
+
   /// Texel at v, Texel{} outside the volume and in absent bricks.
   const Texel& operator()(const glm::ivec3& v) const {
     static const Texel empty{};

@@ -81,7 +81,7 @@ void run_gather(const Input& input) {
   const View view = make_view(input.options.view, scene, cone_bytes_per_pixel);
   const Caster caster(scene);
   const bool bounced = input.volumes.has("radiance_bounce");
-  const Medium medium = make_medium(input.volumes.pyramid(bounced));
+  const Medium medium = make_medium(input.volumes.pyramid(bounced), input.settings.mipmap.filter);
   ConeImage result = render_cones(scene, caster, medium, view, input.settings.render, input.terminal.progress());
   nlohmann::json origin = provenance(scene, view);
   origin["settings"] = to_json(input.settings);
