@@ -124,8 +124,8 @@ TEST_CASE("Indirect light on the Cornell box with a point light agrees with the 
 
 TEST_CASE("Closed rooms with oblique walls lose no more light than measured", "[pipeline]") {
   // Radiance is 1 / (1 - 0.5) = 2 times the emission (furnace), 0.5 / pi times 2 W/m^2 (sphere). Measured: 0.990 of the
-  // truth in the aligned cube, 0.989 in the turned one, 0.986 in the sphere, of which automatic bounces leave out 0.008.
-  // Without the joint opacity of texels behind each other (optical_depths) the last two were 0.92 and 0.89.
+  // truth in the aligned cube, 0.989 in the turned one, 0.986 in the sphere, of which automatic bounces leave out
+  // 0.008. Without the joint opacity of texels behind each other (optical_depths) the last two were 0.92 and 0.89.
   const auto share = [](const Scene& scene, double truth) {
     const Caster caster(scene);
     return mean_luminance(cone_trace(scene, caster, view_of(scene, 16), at(64)).image.image, "") / truth;
