@@ -89,7 +89,7 @@ ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, 
   surfaces = {};  // the image needs none of them
   shading = {};
   result.image = timed(seconds.cone_trace, [&] {
-    const LitVolume volume = lit_volume(std::move(pyramid), settings.render.cone.opacity);
+    const LitVolume volume = lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
     const LitScene lit{scene,          caster,
                        volume,         settings.grid.bounds.value_or(scene.bounds()),
                        settings.light, visibility ? &*visibility : nullptr};

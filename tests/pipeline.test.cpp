@@ -124,10 +124,9 @@ TEST_CASE("Indirect light on the Cornell box with a point light agrees with the 
 }
 
 TEST_CASE("Closed rooms with oblique walls lose no more light than measured", "[pipeline]") {
-  // Radiance is 1 / (1 - 0.5) = 2 times the emission (furnace), 0.5 / pi times 2 W/m^2 (sphere). Where a wall crosses
-  // texels at an angle, the filter takes the shares of two texels behind each other for independent, and wide cones
-  // read such texels: measured are 0.92 of the truth in a turned cube and 0.89 in a sphere, where the aligned cube has
-  // 0.987.
+  // Radiance is 1 / (1 - 0.5) = 2 times the emission (furnace), 0.5 / pi times 2 W/m^2 (sphere). Measured: 0.990 of the
+  // truth in the aligned cube, 0.989 in the turned one, 0.986 in the sphere, of which automatic bounces leave out
+  // 0.008. Without the joint opacity of texels behind each other (optical_depths) the last two were 0.92 and 0.89.
   const auto share = [](const Scene& scene, double truth) {
     const Caster caster(scene);
     return mean_luminance(cone_trace(scene, caster, view_of(scene, 16), at(64)).image.image, "") / truth;
@@ -137,6 +136,6 @@ TEST_CASE("Closed rooms with oblique walls lose no more light than measured", "[
   for (glm::vec3& position : turned.positions) position = turn * position;
   for (glm::vec3& normal : turned.normals) normal = turn * normal;
   CHECK(share(furnace(0.5f), 2.0) > 0.98);
-  CHECK(share(turned, 2.0) > 0.90);
-  CHECK(share(sphere_furnace(0.5f, 4), 1.0 / std::numbers::pi) > 0.87);
+  CHECK(share(turned, 2.0) > 0.98);
+  CHECK(share(sphere_furnace(0.5f, 4), 1.0 / std::numbers::pi) > 0.98);
 }

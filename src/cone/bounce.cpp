@@ -155,9 +155,10 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
     if (options.cones == published_cones)
       return gather_bounce<Texel>(surfaces, direct, RawGather<Texel>(surfaces, std::move(result.pyramid), options),
                                   result.radiance, so_far);
-    return gather_bounce<Texel>(
-        surfaces, direct, MediumGather(surfaces, make_medium(std::move(result.pyramid)), options, cone, background),
-        result.radiance, so_far);
+    return gather_bounce<Texel>(surfaces, direct,
+                                MediumGather(surfaces, make_medium(std::move(result.pyramid), mipmap_options.filter),
+                                             options, cone, background),
+                                result.radiance, so_far);
   };
   // Bytes cannot hold more than 1, and the published cones clamp what arrives: then light does not grow for ever.
   const bool bounded = std::is_same_v<Texel, Rgba8> || options.cones == published_cones;

@@ -26,6 +26,17 @@ int cells_inside_ring(int cells, double omega) {
   return inside < 4 ? 1 : std::min(inside, cells - 3);
 }
 
+/// Texels are narrower than the cone that samples them, in proportion to its tangent. A surface seems up to a texel
+/// nearer than it is: an error of the first order in their width. That a cone is sampled along its axis alone is one of
+/// the second order in the cone's. So as cones narrow, texels must narrow with their square. In proportion, up to six
+/// cones sample texels as wide as they are; there finer ones cost more by what lies beside the axis than they gain
+/// (measured on the Cornell box: relative error 0.44, 0.50 at half the width, 0.62 at a quarter), from 64 cones on they
+/// gain (0.32, 0.30, 0.23).
+float texel_over_diameter(float tan_half_angle) {
+  constexpr float whole = 0.66332f;  // tan of six cones' half-angle, cos = 5/6
+  return std::min(tan_half_angle / whole, 1.0f);
+}
+
 /// Appends the `count` cells between two polar angles. With sectors of width w = 2 pi / count, around azimuth phi:
 ///   weight        = integral cos sin dtheta dphi            = w (sin^2 t1 - sin^2 t0) / 2
 ///   mean, across  = integral sin cos(phi') cos sin          = 2 sin(w/2) (sin^3 t1 - sin^3 t0) / 3
@@ -40,7 +51,7 @@ void add_ring(std::vector<Cone>& cones, int count, double cos0, double cos1, flo
   for (int i = 0; i < count; ++i) {
     const double phi = width * i;
     cones.push_back({glm::vec3(across * std::cos(phi) / length, across * std::sin(phi) / length, along / length),
-                     static_cast<float>(weight), tan_half_angle});
+                     static_cast<float>(weight), tan_half_angle, texel_over_diameter(tan_half_angle)});
   }
 }
 

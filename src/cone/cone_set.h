@@ -9,6 +9,7 @@ struct Cone {
   glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< unit, in a frame whose z is the normal
   float weight = 0.0f;                    ///< cosine integral over the cone's cell, sr; a set sums to pi
   float tan_half_angle = 0.0f;            ///< of the circular cone with the cell's solid angle, at most tan 60 degrees
+  float texel = 1.0f;                     ///< side of the texels that it samples over its own diameter, in (0, 1]
 };
 
 /// In place of a count of cones: the directions and weights that the published shaders use, four at voxels and six at

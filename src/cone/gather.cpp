@@ -15,10 +15,9 @@ struct Apex {
 };
 
 Apex apex_over(const Medium& medium, const GatherPoint& point, const ConeOptions& options) {
-  // The surface's voxels and the filter are cubes: they reach furthest, by the 1-norm, along a diagonal normal.
-  const glm::vec3& n = point.geometric_normal;
-  const float height = options.start * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  return {point.position + height * medium.texels.grid.voxel * n, {n, height}};
+  const float voxel = medium.texels.grid.voxel;
+  const glm::vec3 lift = apex_height(point.geometric_normal, options) * point.geometric_normal + point.aside / voxel;
+  return {point.position + voxel * lift, {point.geometric_normal, lift}};
 }
 
 }  // namespace
@@ -29,12 +28,17 @@ float openness(float occlusion, const AoOptions& options) {
   return std::clamp(1.0f - occlusion / total + options.alpha, 0.0f, 1.0f);
 }
 
+float apex_height(const glm::vec3& normal, const ConeOptions& options) {
+  // The surface's voxels and the filter are cubes: they reach furthest, by the 1-norm, along a diagonal normal.
+  return options.start * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+}
+
 DiffuseGather gather_diffuse(const Medium& medium, const ConeSet& cones, const GatherPoint& point,
                              const ConeOptions& options, const AoOptions& ao, const glm::vec3& background) {
   const Apex apex = apex_over(medium, point, options);
   const glm::mat3 frame = cones.frame(point.shading_normal);
   const glm::ivec3& size = medium.texels.grid.size;
-  MarchOptions march_options{options.step, background, 0.0f};
+  MarchOptions march_options{options.step, background};
   if (ao.enabled) march_options.falloff = ao.falloff / static_cast<float>(std::max({size.x, size.y, size.z}));
 
   DiffuseGather result;
@@ -45,6 +49,7 @@ DiffuseGather gather_diffuse(const Medium& medium, const ConeSet& cones, const G
       occlusion += cone.weight;
       continue;
     }
+    march_options.texel = cone.texel;
     const ConeSample seen = march(medium, apex.position, direction, cone.tan_half_angle, apex.own, march_options);
     result.irradiance += cone.weight * seen.radiance;
     occlusion += cone.weight * seen.occlusion;
@@ -58,7 +63,7 @@ glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const 
   const glm::vec3 mirrored = glm::reflect(-to_viewer, point.shading_normal);
   if (glm::dot(mirrored, point.geometric_normal) <= 0.0f) return glm::vec3(0.0f);
   const Apex apex = apex_over(medium, point, options);
-  return march(medium, apex.position, mirrored, tan_half_angle, apex.own, {options.step, background, 0.0f}).radiance;
+  return march(medium, apex.position, mirrored, tan_half_angle, apex.own, {options.step, background}).radiance;
 }
 
 float gather_visibility(const Medium& medium, const GatherPoint& point, const glm::vec3& target, float tan_half_angle,

@@ -33,11 +33,15 @@ struct AoOptions {
   bool skip_black = false;  ///< surfaces without diffuse albedo count as open
 };
 
+/// How far a cone's apex stands off a surface with this normal (unit), in voxels.
+float apex_height(const glm::vec3& normal, const ConeOptions& options);
+
 /// Where cones start.
 struct GatherPoint {
   glm::vec3 position{0.0f};          ///< world
   glm::vec3 geometric_normal{0.0f};  ///< unit; the apex stands off along it, and nothing comes from behind it
   glm::vec3 shading_normal{0.0f};    ///< unit; the cones are arranged around it
+  glm::vec3 aside{0.0f};             ///< world, tangential: moves the apex away from surfaces nearby
 };
 
 struct DiffuseGather {

@@ -11,9 +11,9 @@ using LitVolume = std::variant<Medium, Pyramid, Pyramid8>;
 
 /// Takes the pyramid's memory over.
 template <class Texel>
-LitVolume lit_volume(BasicPyramid<Texel>&& pyramid, ConeOpacity opacity) {
+LitVolume lit_volume(BasicPyramid<Texel>&& pyramid, ConeOpacity opacity, MipmapFilter filter) {
   if (opacity == ConeOpacity::raw) return std::move(pyramid);
-  return make_medium(std::move(pyramid));
+  return make_medium(std::move(pyramid), filter);
 }
 
 /// Gathers with cones through extinction (spec section 5, radiometric).

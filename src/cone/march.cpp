@@ -51,21 +51,51 @@ float coarsest_texel(const Medium& medium) {
   return std::min(Medium::cell(medium.top()), std::max({quarter, sixteenth, 1.0f}));
 }
 
+/// The way of a march: from the apex along the plane of the own surface until the line from the surface point has
+/// risen to the same height, then along that line. Lengths in voxels.
+class Path {
+ public:
+  /// @param apex in voxels
+  Path(const glm::vec3& apex, const glm::vec3& direction, const OwnPlane& own)
+      : apex_(apex), direction_(direction), lift_(own.lift) {
+    const float height = glm::dot(own.normal, own.lift);
+    if (height > 0.0f) descent_ = std::max(glm::dot(own.normal, direction), 0.0f) / height;
+  }
+  glm::vec3 operator()(float s) const { return apex_ + s * direction_ - std::min(s * descent_, 1.0f) * lift_; }
+  /// The line from the surface point, which the march ends on.
+  glm::vec3 origin() const { return descent_ > 0.0f ? apex_ - lift_ : apex_; }
+
+  /// A stretch that is straight.
+  struct Straight {
+    glm::vec3 direction;  ///< per unit of s
+    float end;            ///< it lasts until there
+  };
+  Straight straight(float s) const {
+    if (s * descent_ >= 1.0f || descent_ == 0.0f) return {direction_, infinity};
+    return {direction_ - descent_ * lift_, 1.0f / descent_};
+  }
+
+ private:
+  glm::vec3 apex_, direction_, lift_;
+  float descent_ = 0.0f;  ///< share of the lift that is given up per unit of s
+};
+
 /// How fine a cone samples, along its way; lengths in voxels.
 class Resolution {
  public:
-  Resolution(float tan_half_angle, const glm::vec3& direction, const OwnPlane& own, float coarsest)
-      : widening_(2.0f * tan_half_angle), coarsest_(coarsest) {
+  /// @param widening of the texels per unit of s
+  Resolution(float widening, const glm::vec3& direction, const OwnPlane& own, float coarsest)
+      : widening_(widening), coarsest_(coarsest) {
     // A filter reaches 1.5 texels along each axis, thus 1.5 |n|_1 texels towards the plane.
     const float reach = 1.5f * (std::abs(own.normal.x) + std::abs(own.normal.y) + std::abs(own.normal.z));
     if (reach == 0.0f) return;
-    clear_start_ = own.height / reach;
+    clear_start_ = glm::dot(own.normal, own.lift) / reach;
     clear_slope_ = glm::dot(own.normal, direction) / reach;
   }
-  /// Side of the texels at distance s: the cone's diameter, within what the pyramid holds and the own plane allows.
+  /// Side of the texels at distance s: the cone's share, within what the pyramid holds and the own plane allows.
   float texel(float s) const {
     // Between two levels the coarser one must stay clear of the plane as well: the greatest is a whole level.
-    const float clear = power_of_two_below(std::max(clear_start_ + clear_slope_ * s, 1.0f));
+    const float clear = power_of_two_below(std::max({clear_start_, clear_slope_ * s, 1.0f}));
     return std::min(std::clamp(widening_ * s, 1.0f, coarsest_), clear);
   }
 
@@ -74,32 +104,72 @@ class Resolution {
   float clear_start_ = infinity, clear_slope_ = 0.0f;
 };
 
+/// A stretch of a march on which nothing is stored.
+struct Emptiness {
+  float end = 0.0f;   ///< of the stretch
+  float side = 0.0f;  ///< it is empty for texels up to this wide
+};
+
+/// How far an absent brick of level k reaches from p on. Of its texels those half a texel in from its faces are
+/// interpolated from it alone, and finer levels have no bricks inside of it either.
+template <class Texel>
+float empty_length(const BrickVolume<Texel>& volume, const glm::vec3& p, const glm::vec3& direction, float cell) {
+  constexpr int side = BrickVolume<Texel>::side;
+  const glm::vec3 in_bricks = p / (cell * side);
+  const glm::ivec3 brick(floor_to_int(in_bricks.x), floor_to_int(in_bricks.y), floor_to_int(in_bricks.z));
+  if (!volume.contains(brick * side) || volume.slot(brick) != BrickVolume<Texel>::absent) return 0.0f;
+  const glm::vec3 margin(0.5f * cell), inner = p - cell * glm::vec3(brick * side) - margin;
+  const Interval inside = clip(inner, direction, glm::vec3(cell * side) - 2.0f * margin);
+  return inside.begin == 0.0f ? inside.end : 0.0f;
+}
+
+/// What lies ahead of a sample that saw nothing, from the widest absent brick around it.
+Emptiness empty_ahead(const Medium& medium, const Path& path, float s, float side) {
+  constexpr int levels_up = 3;  // beyond, bricks are seldom absent
+  const Path::Straight straight = path.straight(s);
+  const glm::vec3 p = path(s);
+  const int finest = static_cast<int>(std::ceil(std::log2(side)));
+  for (int k = std::min(finest + levels_up, medium.top()); k >= finest; --k) {
+    const float cell = Medium::cell(k);
+    const float length = k == 0 ? empty_length(medium.texels.base, p, straight.direction, cell)
+                                : empty_length(medium.texels.levels[size_t(k - 1)], p, straight.direction, cell);
+    if (length > 0.0f) return {std::min(s + length, straight.end), cell};
+  }
+  return {};
+}
+
 }  // namespace
 
 ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3& direction, float tan_half_angle,
                  const OwnPlane& own, const MarchOptions& options, float max_distance) {
   const Grid& grid = medium.texels.grid;
   const glm::vec3 start = grid.to_voxels(origin);
-  const Resolution resolution(tan_half_angle, direction, own, coarsest_texel(medium));
+  const Path path(start, direction, own);
+  const Resolution resolution(2.0f * tan_half_angle * options.texel, direction, own, coarsest_texel(medium));
   const DirectionalRead read(direction);
 
   // Filters of texels at the box's border reach half a texel out of it, and border texels stick out of it by up to one.
-  Interval inside = clip(start, direction, glm::vec3(grid.size));
+  Interval inside = clip(path.origin(), direction, glm::vec3(grid.size));
   if (inside.begin < inside.end) inside.end += 1.5f * resolution.texel(inside.end);
   inside.end = std::min(inside.end, max_distance / grid.voxel);
 
   Float4 gathered{};  // premultiplied radiance
   float transmittance = 1.0f, occlusion = 0.0f;
+  Emptiness empty;
   for (float s = inside.begin; s < inside.end;) {
     // The middle of the step stands for it: halving the steps then changes little.
     const float length = std::min(options.step * resolution.texel(s), inside.end - s);
     const float middle = s + 0.5f * length;
     if (s + length <= s) break;  // so close to the end that float32 cannot step
     s += length;
-    const float level = std::log2(resolution.texel(middle));
-    const Float4 sample = quadrilinear(medium, start + middle * direction, level, read);
+    const float side = resolution.texel(middle);
+    if (middle < empty.end && side <= empty.side) continue;
+    const Float4 sample = quadrilinear(medium, path(middle), std::log2(side), read);
     const float sigma = sample[3];
-    if (sigma == 0.0f) continue;
+    if (sigma == 0.0f) {
+      empty = empty_ahead(medium, path, middle, side);
+      continue;
+    }
 
     const float through = std::exp(-sigma * length);
     const float absorbed = transmittance * (1.0f - through);

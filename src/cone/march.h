@@ -7,16 +7,19 @@
 namespace voxref {
 
 struct MarchOptions {
-  float step = 0.5f;           ///< step length in cone diameters (texels, where those are narrower); 0.01 to 4
+  float step = 0.5f;           ///< step length in texels, which are `texel` cone diameters (one voxel at least) wide
   glm::vec3 background{0.0f};  ///< radiance of what leaves the grid's box
   float falloff = 0.0f;        ///< of ConeSample::occlusion, 1/voxel; 0: as opacity
+  float texel = 1.0f;          ///< side of the texels that are sampled over the cone's diameter, see Cone::texel
 };
 
-/// The plane of the surface that gathers. A texel that it passes through holds that surface's own light and opacity, so
-/// that a sample is taken from a level fine enough for its filter, 1.5 texels to each side, to stay above the plane.
+/// The surface that gathers. A texel that it passes through holds that surface's own light and opacity, so that a
+/// cone's apex stands off it, and a sample is taken from a level fine enough for its filter, 1.5 texels to each side,
+/// to stay above its plane. What a cone meets further away must not seem to have moved by as much: a march follows the
+/// line from the surface point itself as soon as that is as far above the plane as the apex.
 struct OwnPlane {
   glm::vec3 normal{0.0f};  ///< unit; zero vector: there is no such surface
-  float height = 0.0f;     ///< of the cone's apex above the plane, voxels
+  glm::vec3 lift{0.0f};    ///< from the surface point to the cone's apex, voxels; not below the plane
 };
 
 struct ConeSample {

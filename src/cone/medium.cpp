@@ -4,20 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "cone/optical_depth.h"
 #include "parallel.h"
 
 namespace voxref {
 namespace {
 
-/// Opacity is held below 1 by this much, since no finite extinction is opaque; one wall transmits as much.
-constexpr float transparency_floor = 1e-4f;
-
-/// A texel in a cell of `cell` voxels a side; without opacity it has no colour either.
-glm::vec4 extinction(const glm::vec4& texel, float cell) {
+/// A texel of the given extinction; without opacity it has no colour either.
+glm::vec4 extinction(const glm::vec4& texel, float sigma) {
   if (texel.a == 0.0f) return glm::vec4(0.0f);
-  const float sigma = -std::log1p(-std::min(texel.a, 1.0f - transparency_floor)) / cell;
-  const glm::vec3 weighted = glm::vec3(texel) * (sigma / texel.a);
-  return {weighted, sigma};
+  return {glm::vec3(texel) * (sigma / texel.a), sigma};
 }
 
 constexpr size_t grain = 4096;  // texels: long enough to hide the cost of a task
@@ -25,15 +21,21 @@ constexpr size_t grain = 4096;  // texels: long enough to hide the cost of a tas
 void convert(BrickVolume<glm::vec4>& volume) {
   const std::span<glm::vec4> texels = volume.texels();
   parallel_for(texels.size(), grain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) texels[i] = extinction(texels[i], 1.0f);
+    for (size_t i = begin; i < end; ++i) texels[i] = extinction(texels[i], optical_depth(texels[i].a));
   });
 }
 
-void convert(BrickVolume<DirectionalTexel>& volume, float cell) {
+/// @param depths of the same bricks, or null for what each texel's opacity says by itself
+void convert(BrickVolume<DirectionalTexel>& volume, const BrickVolume<glm::vec3>* depths, float cell) {
   const std::span<DirectionalTexel> texels = volume.texels();
   parallel_for(texels.size(), grain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      for (glm::vec4& face : texels[i]) face = extinction(face, cell);
+      for (size_t face = 0; face < 6; ++face) {
+        glm::vec4& texel = texels[i][face];
+        const float alone = optical_depth(texel.a);
+        const float depth = depths ? std::max(alone, depths->texels()[i][static_cast<int>(face / 2)]) : alone;
+        texel = extinction(texel, depth / cell);
+      }
   });
 }
 
@@ -52,7 +54,7 @@ BrickVolume<To> converted(const BrickVolume<From>& from, Decode&& decode_texel) 
 
 }  // namespace
 
-Medium make_medium(Pyramid8&& pyramid) {
+Medium make_medium(Pyramid8&& pyramid, MipmapFilter filter) {
   const auto decoded = [](const Rgba8& texel) { return to_vec4(decode(texel)); };
   Pyramid floats{pyramid.grid, converted<glm::vec4>(pyramid.base, decoded), {}};
   pyramid.base = {};
@@ -64,14 +66,16 @@ Medium make_medium(Pyramid8&& pyramid) {
     }));
     level = {};
   }
-  return make_medium(std::move(floats));
+  return make_medium(std::move(floats), filter);
 }
 
-Medium make_medium(Pyramid&& pyramid) {
+Medium make_medium(Pyramid&& pyramid, MipmapFilter filter) {
+  std::vector<BrickVolume<glm::vec3>> depths;
+  if (filter == MipmapFilter::anisotropic) depths = optical_depths(pyramid);
   Medium medium{std::move(pyramid)};
   convert(medium.texels.base);
-  for (int level = 1; level <= medium.top(); ++level)
-    convert(medium.texels.levels[static_cast<size_t>(level - 1)], Medium::cell(level));
+  for (size_t k = 0; k < medium.texels.levels.size(); ++k)
+    convert(medium.texels.levels[k], depths.empty() ? nullptr : &depths[k], Medium::cell(static_cast<int>(k) + 1));
   return medium;
 }
 
@@ -83,7 +87,7 @@ Medium make_opacity_medium(const SurfaceGrid& surfaces) {
 
   base.allocate(occupied_bricks(surfaces));
   for (size_t i = 0; i < surfaces.size(); ++i)
-    base(surfaces.voxels[i]) = extinction({0.0f, 0.0f, 0.0f, surfaces.albedo[i].a}, 1.0f);
+    base(surfaces.voxels[i]) = {0.0f, 0.0f, 0.0f, optical_depth(surfaces.albedo[i].a)};
   return medium;
 }
 

@@ -5,7 +5,9 @@ namespace voxref {
 
 /// A pyramid made ready for marching: every texel (premultiplied colour c, opacity a) turned into extinction
 ///
-///   sigma = -ln(1 - min(a, 1 - 1e-4)) / (side of its cell in voxels)      and      sigma x c / a.
+///   sigma = -ln(1 - min(a, 1 - 1e-4)) / (side of its cell in voxels)      and      sigma x c / a,
+///
+/// where a is the texel's opacity beside its neighbours, see optical_depths: oblique walls are opaque at all levels.
 ///
 /// Interpolated so, n short steps attenuate as one long one, and a one-voxel wall stays opaque; interpolated opacity
 /// would let e^-2 of the light through at every resolution (spec 5). Per voxel length rather than per cell, because
@@ -20,10 +22,11 @@ struct Medium {
   static float cell(int level) { return static_cast<float>(1u << level); }
 };
 
-/// Converts in place; the pyramid's memory is taken over.
-Medium make_medium(Pyramid&& pyramid);
+/// Converts in place; the pyramid's memory is taken over. @param filter of the pyramid; an isotropic one keeps its
+/// leaks
+Medium make_medium(Pyramid&& pyramid, MipmapFilter filter = MipmapFilter::anisotropic);
 /// The same of what the bytes hold.
-Medium make_medium(Pyramid8&& pyramid);
+Medium make_medium(Pyramid8&& pyramid, MipmapFilter filter = MipmapFilter::anisotropic);
 
 /// The finest level alone, without radiance, for marching shadows before anything is lit.
 Medium make_opacity_medium(const SurfaceGrid& surfaces);

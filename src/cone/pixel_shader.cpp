@@ -5,6 +5,9 @@
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <variant>
+
+#include "cone/clearance.h"
 
 namespace voxref {
 namespace {
@@ -67,8 +70,9 @@ PixelShader::PixelShader(const LitScene& lit, const RenderOptions& options, cons
 PixelLight PixelShader::operator()(const GBufferPoint& point) const {
   PixelLight light;
   light.emission = point.emission;
-  light.direct = direct(point);
-  gather(point, light);
+  const GatherPoint from = gather_point(point);
+  light.direct = direct(point, from);
+  gather(point, from, light);
   const CompositeOptions& composite = options_.composite;
   glm::vec3 indirect = composite.bounce_strength * (light.diffuse + light.specular);
   if (composite.indirect_power != 1.0f) indirect = glm::pow(indirect, glm::vec3(composite.indirect_power));
@@ -76,7 +80,16 @@ PixelLight PixelShader::operator()(const GBufferPoint& point) const {
   return light;
 }
 
-glm::vec3 PixelShader::direct(const GBufferPoint& point) const {
+// Raw cones start where the published shaders start them, whatever stands near.
+GatherPoint PixelShader::gather_point(const GBufferPoint& point) const {
+  GatherPoint from{point.position, point.geometric_normal, point.normal};
+  if (const auto* medium = std::get_if<Medium>(&lit_.volume))
+    from.aside = clearance(lit_.scene, lit_.caster, point.position, point.geometric_normal, options_.cone,
+                           medium->texels.grid.voxel);
+  return from;
+}
+
+glm::vec3 PixelShader::direct(const GBufferPoint& point, const GatherPoint& from) const {
   glm::vec3 sum(0.0f);
   const bool phong = options_.pixel.brdf == PixelBrdf::blinn_phong;
   for (const Light& light : lit_.scene.lights) {
@@ -87,32 +100,31 @@ glm::vec3 PixelShader::direct(const GBufferPoint& point) const {
     const glm::vec3 brdf =
         phong ? evaluate(point.phong, point.normal, point.to_viewer, lit.to_light, options_.pixel.phong)
               : evaluate(point.reflectance, point.normal, point.to_viewer, lit.to_light);
-    if (brdf != glm::vec3(0.0f)) sum += brdf * cosine * lit.irradiance * visibility(point, light, lit);
+    if (brdf != glm::vec3(0.0f)) sum += brdf * cosine * lit.irradiance * visibility(from, light, lit);
   }
   return sum;
 }
 
-float PixelShader::visibility(const GBufferPoint& point, const Light& light, const Illumination& lit) const {
+float PixelShader::visibility(const GatherPoint& from, const Light& light, const Illumination& lit) const {
   switch (options_.pixel.shadow) {
     case PixelShadow::none:
       return 1.0f;
     case PixelShadow::rays: {
       const Caster& caster = lit_.caster;
-      const Ray away = caster.leave(point.position, point.geometric_normal, lit.to_light);
+      const Ray away = caster.leave(from.position, from.geometric_normal, lit.to_light);
       const bool directional = light.type == LightType::directional;
       return (directional ? !caster.occluded(away) : caster.visible(away.origin, light.position)) ? 1.0f : 0.0f;
     }
     case PixelShadow::cone:
-      return gatherer_.visibility({point.position, point.geometric_normal, point.normal}, light, lit);
+      return gatherer_.visibility(from, light, lit);
     case PixelShadow::visibility:
-      return (*lit_.visibility)(point.position);
+      return (*lit_.visibility)(from.position);
   }
   return 1.0f;
 }
 
-void PixelShader::gather(const GBufferPoint& point, PixelLight& light) const {
+void PixelShader::gather(const GBufferPoint& point, const GatherPoint& from, PixelLight& light) const {
   const Lobes lobe = lobes(point, options_.pixel);
-  const GatherPoint from{point.position, point.geometric_normal, point.normal};
   const bool black = lobe.diffuse == glm::vec3(0.0f);
   if (!black || (options_.ao.enabled && !options_.ao.skip_black)) {
     const DiffuseGather gathered = gatherer_.diffuse(from);

@@ -74,9 +74,11 @@ class PixelShader {
   PixelLight operator()(const GBufferPoint& point) const;
 
  private:
-  glm::vec3 direct(const GBufferPoint& point) const;
-  float visibility(const GBufferPoint& point, const Light& light, const Illumination& lit) const;
-  void gather(const GBufferPoint& point, PixelLight& light) const;
+  glm::vec3 direct(const GBufferPoint& point, const GatherPoint& from) const;
+  float visibility(const GatherPoint& from, const Light& light, const Illumination& lit) const;
+  void gather(const GBufferPoint& point, const GatherPoint& from, PixelLight& light) const;
+  /// Where the point's cones start.
+  GatherPoint gather_point(const GBufferPoint& point) const;
 
   LitScene lit_;
   RenderOptions options_;

@@ -42,7 +42,8 @@ template <class Texel>
 RawCone RawGatherer<Texel>::march(const GatherPoint& point, const glm::vec3& direction,
                                   const std::vector<ConeStep>& steps) const {
   if (misses_box(point, direction)) return {};
-  return march_raw(pyramid_, point.position + unit_ * point.geometric_normal, direction, steps);
+  return march_raw(pyramid_, point.position + options_.cone.start * pyramid_.grid.voxel * point.geometric_normal,
+                   direction, steps);
 }
 
 template <class Texel>

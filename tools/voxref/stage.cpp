@@ -92,7 +92,8 @@ void run_gather(const Input& input) {
   const Caster caster(scene);
   const bool bounced = input.volumes.has("radiance_bounce");
   const Settings& settings = input.settings;
-  const LitVolume volume = lit_volume(input.volumes.pyramid<Texel>(bounced), settings.render.cone.opacity);
+  const LitVolume volume =
+      lit_volume(input.volumes.pyramid<Texel>(bounced), settings.render.cone.opacity, settings.mipmap.filter);
   std::optional<LightVisibility> visibility;
   if (settings.render.pixel.shadow == PixelShadow::visibility) {
     const SurfaceGrid surfaces = input.volumes.surfaces();
