@@ -68,6 +68,12 @@ class AreaMerge {
   SurfaceGrid result_;
 };
 
+SurfaceGrid empty_grid(const Grid& grid) {
+  SurfaceGrid surfaces;
+  surfaces.grid = grid;
+  return surfaces;
+}
+
 }  // namespace
 
 size_t SurfaceGrid::bytes() const {
@@ -85,9 +91,7 @@ std::vector<glm::ivec3> occupied_bricks(const SurfaceGrid& surfaces) {
 SurfaceGrid voxelize_static(const Scene& scene, const Grid& grid, const VoxelizeOptions& options,
                             const Progress& progress) {
   if (options.method == VoxelizeMethod::exact) return voxelize_exact(scene, grid, false, options, progress);
-  SurfaceGrid empty;
-  empty.grid = grid;
-  return voxelize_raster(scene, empty, false, options, progress);
+  return voxelize_raster(scene, empty_grid(grid), false, options, progress);
 }
 
 SurfaceGrid add_dynamic(const Scene& scene, SurfaceGrid fixed, const VoxelizeOptions& options,
@@ -96,7 +100,7 @@ SurfaceGrid add_dynamic(const Scene& scene, SurfaceGrid fixed, const VoxelizeOpt
   if (options.average == VoxelAverage::running_floor8) return voxelize_raster(scene, fixed, true, options, progress);
   const SurfaceGrid moving = options.method == VoxelizeMethod::exact
                                  ? voxelize_exact(scene, fixed.grid, true, options, progress)
-                                 : voxelize_raster(scene, fixed, true, options, progress);
+                                 : voxelize_raster(scene, empty_grid(fixed.grid), true, options, progress);
   return AreaMerge(fixed, moving, options.static_wins)();
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <span>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include "parallel.h"
@@ -115,81 +115,37 @@ VoxelAverages restored(const SurfaceGrid& surfaces, size_t i) {
           restored(surfaces.emission.empty() ? glm::vec3(0.0f) : surfaces.emission[i], count)};
 }
 
-/// An averaged voxel.
-template <class Averages>
-struct Voxel {
-  glm::ivec3 index;
-  Averages averages;
-  bool fixed;  ///< something static is in it
-};
-
 bool earlier(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
 
-/// A layer's fragments, which are sorted by voxel, averaged.
-std::vector<Voxel<PlainMean>> mean_layer(std::span<const KeyedFragment> fragments) {
-  std::vector<Voxel<PlainMean>> voxels;
-  for (const KeyedFragment& keyed : fragments) {
-    const VoxelFragment& fragment = *keyed.fragment;
-    if (voxels.empty() || voxels.back().index != fragment.voxel) voxels.push_back({fragment.voxel, {}, false});
-    voxels.back().averages.add(fragment);
-  }
-  return voxels;
-}
+constexpr size_t none = ~size_t{0};
 
-/// Merges what was there before with a layer's fragments, which are sorted by voxel. The voxels come out sorted too.
-std::vector<Voxel<VoxelAverages>> average_layer(const SurfaceGrid& before, size_t k,
-                                                std::span<const KeyedFragment> fragments,
-                                                const VoxelizeOptions& options) {
-  const glm::ivec3 end_of_layer(0, 0, int(k + 1) * slices_per_layer);
-  const auto first = std::lower_bound(before.voxels.begin(), before.voxels.end(),
-                                      glm::ivec3(0, 0, int(k) * slices_per_layer), earlier);
+/// Merges what was there before with a layer's fragments, which are sorted by voxel. Calls visit(voxel, index in
+/// `before` or none, its fragments) for each voxel that has either, sorted z, y, x.
+template <class Visit>
+void for_each_voxel(const SurfaceGrid& before, size_t layer, std::span<const KeyedFragment> fragments, Visit&& visit) {
+  const auto slice = [](size_t k) { return glm::ivec3(0, 0, int(k) * slices_per_layer); };
+  const auto first = std::lower_bound(before.voxels.begin(), before.voxels.end(), slice(layer), earlier);
   size_t old = size_t(first - before.voxels.begin());
-  std::vector<Voxel<VoxelAverages>> voxels;
-  voxels.reserve(fragments.size());
-  const auto copy_before = [&](const glm::ivec3& index) {
-    for (; old < before.size() && earlier(before.voxels[old], index); ++old)
-      voxels.push_back({before.voxels[old], restored(before, old), true});
+  const auto visit_old_until = [&](const glm::ivec3& voxel) {
+    for (; old < before.size() && earlier(before.voxels[old], voxel); ++old)
+      visit(before.voxels[old], old, fragments.subspan(0, 0));
   };
-  for (const KeyedFragment& keyed : fragments) {
-    const VoxelFragment& fragment = *keyed.fragment;
-    if (voxels.empty() || voxels.back().index != fragment.voxel) {
-      copy_before(fragment.voxel);
-      const bool fixed = old < before.size() && before.voxels[old] == fragment.voxel;
-      voxels.push_back({fragment.voxel, fixed ? restored(before, old++) : VoxelAverages{}, fixed});
-    }
-    if (!(voxels.back().fixed && options.static_wins)) voxels.back().averages.add(fragment);
+  for (size_t i = 0; i < fragments.size();) {
+    size_t end = i + 1;
+    while (end < fragments.size() && fragments[end].row == fragments[i].row && fragments[end].x == fragments[i].x)
+      ++end;
+    const glm::ivec3& voxel = fragments[i].fragment->voxel;
+    visit_old_until(voxel);
+    const bool was_there = old < before.size() && before.voxels[old] == voxel;
+    visit(voxel, was_there ? old++ : none, fragments.subspan(i, end - i));
+    i = end;
   }
-  copy_before(end_of_layer);
-  return voxels;
+  visit_old_until(slice(layer + 1));
 }
 
-void store(SurfaceGrid& surfaces, size_t i, const Voxel<VoxelAverages>& voxel) {
-  const VoxelAverages& averages = voxel.averages;
-  surfaces.fragments[i] = averages.albedo.count;
-  surfaces.albedo[i] = glm::vec4(decoded(averages.albedo), averages.albedo.empty() ? 0.0f : 1.0f);
-  surfaces.normal[i] = 2.0f * decoded(averages.normal) - 1.0f;
-  surfaces.emission[i] = decoded(averages.emission);
-}
-
-void store(SurfaceGrid& surfaces, size_t i, const Voxel<PlainMean>& voxel) {
-  const PlainMean& sums = voxel.averages;
-  const double count = sums.count;
-  surfaces.area[i] = surfaces.grid.voxel * surfaces.grid.voxel * float(count);
-  surfaces.albedo[i] = glm::vec4(sums.albedo / count, 1.0f);
-  surfaces.normal[i] = glm::vec3(2.0 * sums.normal / count - 1.0);
-  surfaces.emission[i] = glm::vec3(sums.emission / count);
-}
-
-/// The layers' voxels one after the other. @param dynamic whether some may be dynamic
-template <class Averages>
-SurfaceGrid joined(const Grid& grid, const std::vector<std::vector<Voxel<Averages>>>& layers, bool dynamic) {
-  std::vector<size_t> first(layers.size() + 1);
-  for (size_t k = 0; k < layers.size(); ++k) first[k + 1] = first[k] + layers[k].size();
-  const size_t count = first.back();
-  SurfaceGrid surfaces;
-  surfaces.grid = grid;
+void allocate(SurfaceGrid& surfaces, size_t count, VoxelAverage average, bool dynamic, bool emits) {
   surfaces.voxels.resize(count);
-  if constexpr (std::is_same_v<Averages, PlainMean>)
+  if (average == VoxelAverage::area)
     surfaces.area.resize(count);
   else
     surfaces.fragments.resize(count);
@@ -197,20 +153,40 @@ SurfaceGrid joined(const Grid& grid, const std::vector<std::vector<Voxel<Average
   surfaces.albedo.resize(count);
   surfaces.normal.resize(count);
   surfaces.centroid.resize(count);
-  surfaces.emission.resize(count);
-  parallel_for(layers.size(), 1, [&](size_t k, size_t) {
-    size_t i = first[k];
-    for (const Voxel<Averages>& voxel : layers[k]) {
-      surfaces.voxels[i] = voxel.index;
-      if (dynamic) surfaces.dynamic[i] = !voxel.fixed;
-      surfaces.centroid[i] = grid.center(voxel.index);
-      store(surfaces, i++, voxel);
-    }
-  });
-  return surfaces;
+  if (emits) surfaces.emission.resize(count);
 }
 
-bool dark(const glm::vec3& emission) { return emission == glm::vec3(0.0f); }
+void store(SurfaceGrid& surfaces, size_t i, const VoxelAverages& averages) {
+  surfaces.fragments[i] = averages.albedo.count;
+  surfaces.albedo[i] = glm::vec4(decoded(averages.albedo), averages.albedo.empty() ? 0.0f : 1.0f);
+  surfaces.normal[i] = 2.0f * decoded(averages.normal) - 1.0f;
+  if (!surfaces.emission.empty()) surfaces.emission[i] = decoded(averages.emission);
+}
+
+void store(SurfaceGrid& surfaces, size_t i, const PlainMean& sums) {
+  const double count = sums.count;
+  surfaces.area[i] = surfaces.grid.voxel * surfaces.grid.voxel * float(count);
+  surfaces.albedo[i] = glm::vec4(sums.albedo / count, 1.0f);
+  surfaces.normal[i] = glm::vec3(2.0 * sums.normal / count - 1.0);
+  if (!surfaces.emission.empty()) surfaces.emission[i] = glm::vec3(sums.emission / count);
+}
+
+/// Averages a voxel's fragments into what it held, and stores it as voxel i.
+void average(SurfaceGrid& surfaces, size_t i, const SurfaceGrid& before, size_t old,
+             std::span<const KeyedFragment> fragments, const VoxelizeOptions& options) {
+  const auto add_all = [&](auto averages) {
+    for (const KeyedFragment& keyed : fragments) averages.add(*keyed.fragment);
+    store(surfaces, i, averages);
+  };
+  if (options.average == VoxelAverage::area)
+    add_all(PlainMean{});
+  else if (old == none)
+    add_all(VoxelAverages{});
+  else if (options.static_wins)
+    store(surfaces, i, restored(before, old));
+  else
+    add_all(restored(before, old));
+}
 
 }  // namespace
 
@@ -218,22 +194,30 @@ SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool 
                             const Progress& progress) {
   const Grid& grid = before.grid;
   assert(grid.size.x == grid.size.y && grid.size.x == grid.size.z);
+  assert(options.average == VoxelAverage::running_floor8 || before.size() == 0);
   const std::vector<std::vector<VoxelFragment>> drawn = draw_fragments(scene, grid, dynamic, progress);
   Layers layers(drawn, grid.size);
-  const auto average = [&](auto&& average_one) {
-    std::vector<decltype(average_one(size_t{0}))> averaged(layers.count());
-    parallel_for(layers.count(), 1, [&](size_t k, size_t) {
-      progress.check();
-      sort_by_voxel(layers[k], grid.size);
-      averaged[k] = average_one(k);
+  std::vector<size_t> first(layers.count() + 1);  // voxel of each layer
+  parallel_for(layers.count(), 1, [&](size_t k, size_t) {
+    progress.check();
+    sort_by_voxel(layers[k], grid.size);
+    for_each_voxel(before, k, layers[k], [&](const glm::ivec3&, size_t, auto) { ++first[k + 1]; });
+  });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+
+  SurfaceGrid surfaces;
+  surfaces.grid = grid;
+  allocate(surfaces, first.back(), options.average, dynamic, scene.has_emission());
+  parallel_for(layers.count(), 1, [&](size_t k, size_t) {
+    progress.check();
+    size_t i = first[k];
+    for_each_voxel(before, k, layers[k], [&](const glm::ivec3& voxel, size_t old, auto fragments) {
+      surfaces.voxels[i] = voxel;
+      if (dynamic) surfaces.dynamic[i] = old == none;
+      surfaces.centroid[i] = grid.center(voxel);
+      average(surfaces, i++, before, old, fragments, options);
     });
-    return averaged;
-  };
-  if (options.average == VoxelAverage::area)
-    return joined(grid, average([&](size_t k) { return mean_layer(layers[k]); }), false);
-  SurfaceGrid surfaces =
-      joined(grid, average([&](size_t k) { return average_layer(before, k, layers[k], options); }), dynamic);
-  if (std::ranges::all_of(surfaces.emission, dark)) surfaces.emission = {};
+  });
   return surfaces;
 }
 
