@@ -52,17 +52,20 @@ float coarsest_texel(const Medium& medium) {
 }
 
 /// The way of a march: from the apex along the plane of the own surface until the line from the surface point has
-/// risen to the same height, then along that line. Lengths in voxels.
+/// risen to the same height, then along that line. Texels as wide as the cone blur by more than the lift, so that such
+/// a cone keeps it; its texels are then clear of the own plane sooner. Lengths in voxels.
 class Path {
  public:
-  /// @param apex in voxels
-  Path(const glm::vec3& apex, const glm::vec3& direction, const OwnPlane& own)
+  /// @param apex in voxels @param descends to the line from the surface point
+  Path(const glm::vec3& apex, const glm::vec3& direction, const OwnPlane& own, bool descends)
       : apex_(apex), direction_(direction), lift_(own.lift) {
-    const float height = glm::dot(own.normal, own.lift);
-    if (height > 0.0f) descent_ = std::max(glm::dot(own.normal, direction), 0.0f) / height;
+    height_ = glm::dot(own.normal, own.lift);
+    rise_ = glm::dot(own.normal, direction);
+    if (descends && height_ > 0.0f) descent_ = std::max(rise_, 0.0f) / height_;
   }
-  glm::vec3 operator()(float s) const { return apex_ + s * direction_ - std::min(s * descent_, 1.0f) * lift_; }
-  /// The line from the surface point, which the march ends on.
+  glm::vec3 operator()(float s) const { return apex_ + s * direction_ - given_up(s) * lift_; }
+  float height(float s) const { return height_ + s * rise_ - given_up(s) * height_; }  ///< over the own plane
+  /// Of the line that the march ends on.
   glm::vec3 origin() const { return descent_ > 0.0f ? apex_ - lift_ : apex_; }
 
   /// A stretch that is straight.
@@ -76,32 +79,34 @@ class Path {
   }
 
  private:
+  float given_up(float s) const { return std::min(s * descent_, 1.0f); }  ///< share of the lift
+
   glm::vec3 apex_, direction_, lift_;
-  float descent_ = 0.0f;  ///< share of the lift that is given up per unit of s
+  float height_ = 0.0f, rise_ = 0.0f, descent_ = 0.0f;
 };
 
 /// How fine a cone samples, along its way; lengths in voxels.
 class Resolution {
  public:
   /// @param widening of the texels per unit of s
-  Resolution(float widening, const glm::vec3& direction, const OwnPlane& own, float coarsest)
-      : widening_(widening), coarsest_(coarsest) {
+  Resolution(float widening, const Path& path, const glm::vec3& own_normal, float coarsest)
+      : path_(path), widening_(widening), coarsest_(coarsest) {
     // A filter reaches 1.5 texels along each axis, thus 1.5 |n|_1 texels towards the plane.
-    const float reach = 1.5f * (std::abs(own.normal.x) + std::abs(own.normal.y) + std::abs(own.normal.z));
-    if (reach == 0.0f) return;
-    clear_start_ = glm::dot(own.normal, own.lift) / reach;
-    clear_slope_ = glm::dot(own.normal, direction) / reach;
+    const float reach = 1.5f * (std::abs(own_normal.x) + std::abs(own_normal.y) + std::abs(own_normal.z));
+    if (reach > 0.0f) clear_per_height_ = 1.0f / reach;
   }
   /// Side of the texels at distance s: the cone's share, within what the pyramid holds and the own plane allows.
   float texel(float s) const {
+    const float side = std::clamp(widening_ * s, 1.0f, coarsest_);
+    if (clear_per_height_ == 0.0f) return side;
     // Between two levels the coarser one must stay clear of the plane as well: the greatest is a whole level.
-    const float clear = power_of_two_below(std::max({clear_start_, clear_slope_ * s, 1.0f}));
-    return std::min(std::clamp(widening_ * s, 1.0f, coarsest_), clear);
+    return std::min(side, power_of_two_below(std::max(path_.height(s) * clear_per_height_, 1.0f)));
   }
 
  private:
+  const Path& path_;
   float widening_, coarsest_;
-  float clear_start_ = infinity, clear_slope_ = 0.0f;
+  float clear_per_height_ = 0.0f;  ///< texels over the own plane's height; 0: there is no such plane
 };
 
 /// A stretch of a march on which nothing is stored.
@@ -144,8 +149,9 @@ ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3&
                  const OwnPlane& own, const MarchOptions& options, float max_distance) {
   const Grid& grid = medium.texels.grid;
   const glm::vec3 start = grid.to_voxels(origin);
-  const Path path(start, direction, own);
-  const Resolution resolution(2.0f * tan_half_angle * options.texel, direction, own, coarsest_texel(medium));
+  const float widening = 2.0f * tan_half_angle * options.texel;
+  const Path path(start, direction, own, options.texel < 1.0f);
+  const Resolution resolution(widening, path, own.normal, coarsest_texel(medium));
   const DirectionalRead read(direction);
 
   // Filters of texels at the box's border reach half a texel out of it, and border texels stick out of it by up to one.
@@ -155,6 +161,8 @@ ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3&
 
   Float4 gathered{};  // premultiplied radiance
   float transmittance = 1.0f, occlusion = 0.0f;
+  // The texels of wide cones outgrow a brick's level within a step or two.
+  const bool skips = widening < 0.5f;
   Emptiness empty;
   for (float s = inside.begin; s < inside.end;) {
     // The middle of the step stands for it: halving the steps then changes little.
@@ -167,7 +175,7 @@ ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3&
     const Float4 sample = quadrilinear(medium, path(middle), std::log2(side), read);
     const float sigma = sample[3];
     if (sigma == 0.0f) {
-      empty = empty_ahead(medium, path, middle, side);
+      if (skips) empty = empty_ahead(medium, path, middle, side);
       continue;
     }
 

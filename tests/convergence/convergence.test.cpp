@@ -55,7 +55,8 @@ TEST_CASE("Cone traced light comes nearer to path traced light as voxels and con
   CHECK(std::abs(many_cones.mean_ratio - 1.0) < 0.03);
 }
 
-// Half an hour on two cores. `voxref_tests "[.long]"` runs it.
+// Not in the default run: the last rung alone traces four million cones at the pixels. `voxref_tests "[.long]"` runs
+// it.
 TEST_CASE("With voxels, cones and bounces refined together the error falls below 5 %", "[.long][consistency]") {
   const Scene scene = cornell_box(CornellLight::point);
   const View view = square_view(scene, 64);
