@@ -103,7 +103,8 @@ TEST_CASE("Moved by whole voxels, dyadic surfaces bounce to the same bits", "[co
     REQUIRE(surfaces.grid.voxel == 0.0625f);
     BounceOptions options;
     options.count = 2;
-    return bounce(surfaces, shade(scene, &caster, surfaces, {}), options, {}, {}, glm::vec3(0.0f)).radiance;
+    return bounce(surfaces, shade(scene, &caster, surfaces, {}, {}).radiance, options, {}, {}, glm::vec3(0.0f))
+        .radiance;
   };
   const std::vector<glm::vec3> here = bounced(room);
   for (const glm::vec3 voxels : {glm::vec3(1.0f, 0.0f, 0.0f), glm::vec3(-3.0f, 5.0f, 16.0f)}) {
