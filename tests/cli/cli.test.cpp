@@ -62,7 +62,8 @@ TEST_CASE("a bad command line is refused in one line that names the flag", "[cli
                                   "--threads 0", "--light-scale -1", "--pixel corner", "--yfov 180", "--background 1,2",
                                   "--background -1,0,0", "--camera nobody", "--camera 99", "--eye 1,2,3", "--up 0,1,0"})
     check_refused(place, "path point.glb -o out.exr " + value, "--");
-  check_refused(place, "cone point.glb -o out.exr --profile villegas2016", "--profile: ");
+  check_refused(place, "cone point.glb -o out.exr --profile villegas", "--profile: ");
+  check_refused(place, "cone point.glb -o out.exr --set voxelize.method=raster", "grid.cubic=true");
   check_refused(place, "cone point.glb -o out.exr --set cone.stepp=1", "cone.step");
   check_refused(place, "cone point.glb -o out.exr --set grid.resolution=8", "16 to 2048");
   check_refused(place, "cone point.glb -o out.exr --config missing.json", "missing.json");
