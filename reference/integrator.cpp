@@ -34,129 +34,198 @@ float power_heuristic(float pdf, float other) {
 
 }  // namespace
 
-/// A path under way.
-struct Integrator::State {
-  const Sampler& sampler;
-  PathCounts& counts;
-  std::optional<PathVertex> vertex;  // none: outside the scene
-  Layers layers;
-  glm::vec3 throughput{1.0f};  // product of BSDF x cosine / pdf so far
-  float bsdf_pdf = 0.0f;       // with which the vertex was found, per solid angle; 0: by the camera
-  int depth = 0;               // surfaces before this vertex
-  Receiver previous{};         // the vertex before this one, where there is one
+void Wave::begin(std::span<const PathStart> starts, size_t bounces_each) {
+  starts_ = starts;
+  depth_ = 0;
+  samples_.assign(starts.size(), {});
+  bounces_each_ = bounces_each;
+  bounces_.assign(starts.size() * bounces_each, glm::vec3(0.0f));
+  next_paths_.clear();
+  paths_.assign(starts.size(), {});
+  for (uint32_t i = 0; i < starts.size(); ++i) paths_[i].start = i;
+  for (auto* list : {&rays_, &next_rays_, &shadow_rays_}) list->clear();
+  pending_.clear();
+  draw();
+}
 
-  uint32_t dimension(Dimension set) const { return 1 + static_cast<uint32_t>(depth) * dimensions_per_vertex + set; }
-  /// Radiance that was scattered `times` times on its way to the camera.
-  void add(int times, const glm::vec3& radiance) {
-    if (finite(radiance))
-      layers.scattered(times) += radiance;
-    else
-      ++counts.nonfinite;
+/// All random numbers of the paths at hand, whether they come to need them or not: made together, they cost little.
+void Wave::draw() {
+  samplers_.clear();
+  for (const Path& path : paths_) samplers_.add(starts_[path.start].sampler);
+  const auto dimension = [this](Dimension set) {
+    return 1 + static_cast<uint32_t>(depth_) * dimensions_per_vertex + set;
+  };
+  samplers_.bits_1d(dimension(choose_punctual), choose_punctual_.x);
+  samplers_.bits_2d(dimension(point_on_emitter), point_on_emitter_.x, point_on_emitter_.y);
+  samplers_.bits_1d(dimension(choose_lobe), choose_lobe_.x);
+  samplers_.bits_2d(dimension(bsdf_direction), bsdf_direction_.x, bsdf_direction_.y);
+  samplers_.bits_1d(dimension(roulette), roulette_.x);
+}
+
+/// Radiance that was scattered `times` times on its way to the camera.
+void Wave::add(uint32_t start, int times, const glm::vec3& radiance) {
+  if (!finite(radiance)) {
+    ++samples_[start].nonfinite;
+    return;
   }
-};
+  samples_[start].layers.scattered(times) += radiance;
+  if (const auto bounce = static_cast<size_t>(times - 2); bounce < bounces_each_)
+    bounces_[start * bounces_each_ + bounce] += radiance;
+}
+
+/// Light that reaches the camera if nothing blocks the shadow ray that is to follow.
+void Wave::pend(uint32_t start, const glm::vec3& radiance) {
+  Pending& pending = pending_.emplace_back();
+  pending.start = start;
+  pending.radiance = radiance;
+}
 
 Integrator::Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
-                       const Transport& transport)
+                       const Transport& transport, int bounces)
     : surfaces_(surfaces),
       caster_(caster),
       lights_(scene, surfaces.materials()),
       background_(background),
       max_depth_(transport.max_depth.value_or(std::numeric_limits<int>::max())),
       compensates_(transport.energy_compensation),
+      bounces_(static_cast<size_t>(bounces)),
       light_can_be_hit_(scene.has_emission() || background != glm::vec3(0.0f)) {}
 
-void Integrator::cast(const Ray& ray, std::optional<PathVertex>& vertex, PathCounts& counts) const {
-  ++counts.closest_rays;
-  if (const Hit hit = caster_.closest(ray))
-    vertex.emplace(surfaces_, hit, ray);
-  else
-    vertex.reset();
+void Integrator::trace(std::span<const PathStart> starts, Wave& wave, PathCounts& counts) const {
+  wave.begin(starts, bounces_);
+  for (uint32_t i = 0; i < starts.size(); ++i) {
+    if (starts[i].seen)
+      arrive(wave, i, *starts[i].seen);
+    else
+      wave.add(i, 0, background_);
+  }
+  settle_shadows(wave, counts);
+  while (!wave.next_paths_.empty()) {
+    follow(wave, counts);
+    settle_shadows(wave, counts);
+  }
+  for (const PathSample& sample : wave.samples_) counts.nonfinite += sample.nonfinite;
 }
 
-Layers Integrator::trace(const std::optional<PathVertex>& seen, const Sampler& sampler, PathCounts& counts) const {
-  State state{sampler, counts, seen, {}};
-  for (;; ++state.depth) {
-    if (!state.vertex) {
-      state.add(state.depth, state.throughput * background_);
-      break;
-    }
-    SurfacePoint& surface = state.vertex->surface;
-    if (compensates_)
-      compensate_energy(surface.reflectance, glm::dot(surface.shading_normal, state.vertex->to_previous));
-    if (surface.emission != glm::vec3(0.0f)) state.add(state.depth, state.throughput * emitted(state));
-    if (state.depth >= max_depth_ || surface.reflectance.black()) break;
-
-    const Bsdf bsdf(surface, state.vertex->to_previous);
-    if (lights_.punctual_count() > 0) add_punctual(state, bsdf);
-    if (lights_.has_emitters()) add_emitters(state, bsdf);
-    // The last ray can only find light itself.
-    if (state.depth + 1 == max_depth_ && !light_can_be_hit_) break;
-    if (!scatter(state, bsdf)) break;
+/// Casts the rays of all paths that go on, and takes them to the surfaces that these find.
+void Integrator::follow(Wave& wave, PathCounts& counts) const {
+  std::swap(wave.paths_, wave.next_paths_);
+  std::swap(wave.rays_, wave.next_rays_);
+  wave.next_paths_.clear();
+  wave.next_rays_.clear();
+  ++wave.depth_;
+  wave.hits_.resize(wave.rays_.size());
+  caster_.closest(wave.rays_, wave.hits_);
+  counts.closest_rays += wave.rays_.size();
+  surfaces_.prefetch(wave.hits_);
+  wave.draw();
+  for (size_t i = 0; i < wave.paths_.size(); ++i) {
+    if (wave.hits_[i])
+      arrive(wave, i, PathVertex(surfaces_, wave.hits_[i], wave.rays_[i]));
+    else
+      wave.add(wave.paths_[i].start, wave.depth_, wave.paths_[i].throughput * background_);
   }
-  return state.layers;
+}
+
+/// Light sampled at the present vertices arrives where nothing blocks it.
+void Integrator::settle_shadows(Wave& wave, PathCounts& counts) const {
+  wave.blocked_.resize(wave.shadow_rays_.size());
+  caster_.occluded(wave.shadow_rays_, wave.blocked_);
+  counts.occlusion_rays += wave.shadow_rays_.size();
+  for (size_t i = 0; i < wave.pending_.size(); ++i)
+    if (!wave.blocked_[i]) wave.add(wave.pending_[i].start, wave.depth_ + 1, wave.pending_[i].radiance);
+  wave.shadow_rays_.clear();
+  wave.pending_.clear();
+}
+
+void Integrator::arrive(Wave& wave, size_t i, const PathVertex& vertex) const {
+  const Wave::Path& path = wave.paths_[i];
+  const SurfacePoint& surface = vertex.surface;
+  if (surface.emission != glm::vec3(0.0f)) wave.add(path.start, wave.depth_, path.throughput * emitted(path, vertex));
+  if (wave.depth_ >= max_depth_ || surface.reflectance.black()) return;
+  if (!compensates_) return scatter_light(wave, i, vertex);
+  PathVertex compensated = vertex;
+  compensate_energy(compensated.surface.reflectance, glm::dot(surface.shading_normal, vertex.to_previous));
+  scatter_light(wave, i, compensated);
+}
+
+/// Light that the vertex scatters: straight from the lights, and what the path goes on to find.
+void Integrator::scatter_light(Wave& wave, size_t i, const PathVertex& vertex) const {
+  const Bsdf bsdf(vertex.surface, vertex.to_previous);
+  if (lights_.punctual_count() > 0) add_punctual(wave, i, vertex, bsdf);
+  if (lights_.has_emitters()) add_emitters(wave, i, vertex, bsdf);
+  // The last ray can only find light itself.
+  if (wave.depth_ + 1 < max_depth_ || light_can_be_hit_) scatter(wave, i, vertex, bsdf);
 }
 
 /// Emission of the vertex, weighed against the chance that the vertex before had sampled it as a light.
-glm::vec3 Integrator::emitted(const State& state) const {
-  const SurfacePoint& surface = state.vertex->surface;
-  if (state.bsdf_pdf == 0.0f) return surface.emission;
+glm::vec3 Integrator::emitted(const Wave::Path& path, const PathVertex& vertex) const {
+  if (path.bsdf_pdf == 0.0f) return vertex.surface.emission;
   const float light_pdf =
-      lights_.emitter_pdf(state.previous, surface.triangle, state.vertex->to_previous, state.vertex->distance);
-  return power_heuristic(state.bsdf_pdf, light_pdf) * surface.emission;
+      lights_.emitter_pdf(path.previous, vertex.surface.triangle, vertex.to_previous, vertex.distance);
+  return power_heuristic(path.bsdf_pdf, light_pdf) * vertex.surface.emission;
 }
 
-void Integrator::add_punctual(State& state, const Bsdf& bsdf) const {
-  const SurfacePoint& surface = state.vertex->surface;
-  const uint32_t bits = lights_.punctual_count() > 1 ? state.sampler.bits_1d(state.dimension(choose_punctual)) : 0;
-  const std::optional<PunctualSample> light = lights_.sample_punctual({surface.position, surface.shading_normal}, bits);
+void Integrator::add_punctual(Wave& wave, size_t i, const PathVertex& vertex, const Bsdf& bsdf) const {
+  const Wave::Path& path = wave.paths_[i];
+  const SurfacePoint& surface = vertex.surface;
+  const std::optional<PunctualSample> light =
+      lights_.sample_punctual({surface.position, surface.shading_normal}, wave.choose_punctual_.x[i]);
   if (!light) return;
   const glm::vec3 radiance = bsdf.value(light->to_light) * light->irradiance;
   if (radiance == glm::vec3(0.0f)) return;
-  Ray ray = caster_.leave(surface.position, surface.geometric_normal, light->to_light);
+  wave.pend(path.start, path.throughput * radiance);
+  Ray& ray = wave.shadow_rays_.emplace_back();
+  ray.origin = surface.position + caster_.surface_offset() * surface.geometric_normal;
+  ray.direction = light->to_light;
   ray.tmax = light->distance;
-  ++state.counts.occlusion_rays;
-  if (!caster_.occluded(ray)) state.add(state.depth + 1, state.throughput * radiance);
 }
 
-void Integrator::add_emitters(State& state, const Bsdf& bsdf) const {
-  const SurfacePoint& surface = state.vertex->surface;
-  const std::optional<EmitterSample> light = lights_.sample_emitter(
-      {surface.position, surface.shading_normal}, state.sampler.bits_2d(state.dimension(point_on_emitter)));
+void Integrator::add_emitters(Wave& wave, size_t i, const PathVertex& vertex, const Bsdf& bsdf) const {
+  const Wave::Path& path = wave.paths_[i];
+  const SurfacePoint& surface = vertex.surface;
+  const std::optional<EmitterSample> light =
+      lights_.sample_emitter({surface.position, surface.shading_normal}, wave.point_on_emitter_.bits(i));
   if (!light) return;
   const glm::vec3 radiance = bsdf.value(light->to_light) * light->radiance;
   if (radiance == glm::vec3(0.0f)) return;
-  const float offset = caster_.surface_offset();
-  ++state.counts.occlusion_rays;
-  if (!caster_.visible(surface.position + offset * surface.geometric_normal, light->position + offset * light->normal))
-    return;
   const float weight = power_heuristic(light->pdf, bsdf.pdf(light->to_light));
-  state.add(state.depth + 1, state.throughput * radiance * (weight / light->pdf));
+  wave.pend(path.start, path.throughput * radiance * (weight / light->pdf));
+  const float offset = caster_.surface_offset();
+  Ray& ray = wave.shadow_rays_.emplace_back();
+  ray.origin = surface.position + offset * surface.geometric_normal;
+  ray.direction = light->position + offset * light->normal - ray.origin;
+  ray.tmax = 1.0f;
 }
 
-/// Goes on to the next vertex. False where the path ends.
-bool Integrator::scatter(State& state, const Bsdf& bsdf) const {
-  const float choice = bsdf.chooses() ? state.sampler.get_1d(state.dimension(choose_lobe)) : 0.0f;
-  const std::optional<BsdfSample> next = bsdf.sample(choice, state.sampler.get_2d(state.dimension(bsdf_direction)));
-  if (!next) return false;
-  state.throughput *= next->weight;
-  if (!finite(state.throughput)) {
-    ++state.counts.nonfinite;
-    return false;
+/// Sends the path on to its next vertex, unless it ends here.
+void Integrator::scatter(Wave& wave, size_t i, const PathVertex& vertex, const Bsdf& bsdf) const {
+  const Wave::Path& path = wave.paths_[i];
+  const std::optional<BsdfSample> next =
+      bsdf.sample(unit_float(wave.choose_lobe_.x[i]), unit_floats(wave.bsdf_direction_.bits(i)));
+  if (!next) return;
+  glm::vec3 throughput = path.throughput * next->weight;
+  if (!finite(throughput)) {
+    ++wave.samples_[path.start].nonfinite;
+    return;
   }
   // From the throughput alone, never from the light: twice the light then gives exactly twice the image.
-  if (state.depth > 0) {
-    const float most = state.depth < long_path ? 1.0f : most_survival_of_long;
-    const float survival = std::min(largest(state.throughput) / least_throughput, most);
+  if (wave.depth_ > 0) {
+    const float most = wave.depth_ < long_path ? 1.0f : most_survival_of_long;
+    const float survival = std::min(largest(throughput) / least_throughput, most);
     if (survival < 1.0f) {
-      if (state.sampler.get_1d(state.dimension(roulette)) >= survival) return false;
-      state.throughput /= survival;
+      if (unit_float(wave.roulette_.x[i]) >= survival) return;
+      throughput /= survival;
     }
   }
-  state.bsdf_pdf = next->pdf;
-  const SurfacePoint& surface = state.vertex->surface;
-  state.previous = {surface.position, surface.shading_normal};
-  cast(caster_.leave(surface.position, surface.geometric_normal, next->in), state.vertex, state.counts);
-  return true;
+  Wave::Path& onwards = wave.next_paths_.emplace_back();
+  onwards.start = path.start;
+  onwards.throughput = throughput;
+  onwards.bsdf_pdf = next->pdf;
+  onwards.previous = {vertex.surface.position, vertex.surface.shading_normal};
+  Ray& ray = wave.next_rays_.emplace_back();
+  ray.origin = vertex.surface.position + caster_.surface_offset() * vertex.surface.geometric_normal;
+  ray.direction = next->in;
 }
 
 }  // namespace voxref

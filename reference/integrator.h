@@ -2,9 +2,12 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "reference/light_sampling.h"
 #include "reference/sampler.h"
+#include "reference/sampler_block.h"
 #include "scene/caster.h"
 #include "scene/surface.h"
 
@@ -36,32 +39,99 @@ struct Transport {
   bool energy_compensation = false;  ///< as PathOptions::energy_compensation
 };
 
+/// A path to trace: from what the camera sees on, with random numbers of its own.
+struct PathStart {
+  const PathVertex* seen;  ///< null: the camera looks out of the scene
+  Sampler sampler;         ///< its dimension 0 is left to the caller
+};
+
+/// What a path found.
+struct PathSample {
+  Layers layers;
+  uint32_t nonfinite = 0;  ///< contributions that were NaN or infinite and were left out
+};
+
 /// Counted along the way; integers, so that their sum does not depend on the order.
 struct PathCounts {
   uint64_t closest_rays = 0, occlusion_rays = 0;
-  uint64_t nonfinite = 0;  ///< contributions that were NaN or infinite and were left out
+  uint64_t nonfinite = 0;  ///< sum over the paths' samples
 };
 
-/// Estimates the rendering equation (thesis eq. 1.17) along single paths, from the camera: at each vertex the light is
-/// sampled (next-event estimation) and the BSDF is; where both find emissive triangles, they are weighed by the power
-/// heuristic (Veach and Guibas 1995). Immutable, keeps references; any number of threads may trace at once.
-class Integrator {
+/// Paths on their way together. Kept between calls, so that nothing is allocated in the loop.
+class Wave {
  public:
-  Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
-             const Transport& transport);
-
-  /// Sets `vertex` to what a ray (unit direction) finds; none where it leaves the scene. In place: copying what was
-  /// just written costs more than the copy.
-  void cast(const Ray& ray, std::optional<PathVertex>& vertex, PathCounts& counts) const;
-  /// One path on from what the camera sees; dimension 0 of the sampler is left to the caller.
-  Layers trace(const std::optional<PathVertex>& seen, const Sampler& sampler, PathCounts& counts) const;
+  /// One per path, in the order of the starts; of the trace that was run last.
+  std::span<const PathSample> samples() const { return samples_; }
+  /// The light of path `i` that was scattered 2, 3, ... times, as far as was asked for.
+  std::span<const glm::vec3> bounces(size_t i) const {
+    return std::span(bounces_).subspan(i * bounces_each_, bounces_each_);
+  }
 
  private:
-  struct State;
-  glm::vec3 emitted(const State& state) const;
-  void add_punctual(State& state, const class Bsdf& bsdf) const;
-  void add_emitters(State& state, const class Bsdf& bsdf) const;
-  bool scatter(State& state, const class Bsdf& bsdf) const;
+  friend class Integrator;
+  /// A path that goes on; they all have the same depth.
+  struct Path {
+    uint32_t start = 0;
+    glm::vec3 throughput{1.0f};  // product of BSDF x cosine / pdf so far
+    float bsdf_pdf = 0.0f;       // with which the vertex was found, per solid angle; 0: by the camera
+    Receiver previous{};         // the vertex before, where there is one
+  };
+  /// Light that arrives unless something is in its way.
+  struct Pending {
+    uint32_t start = 0;
+    glm::vec3 radiance{0.0f};
+  };
+
+  /// Random numbers of one set, for each of the paths at hand.
+  struct Numbers {
+    std::vector<uint32_t> x, y;
+    glm::uvec2 bits(size_t i) const { return {x[i], y[i]}; }
+  };
+
+  void begin(std::span<const PathStart> starts, size_t bounces_each);
+  void draw();
+  void add(uint32_t start, int times, const glm::vec3& radiance);
+  void pend(uint32_t start, const glm::vec3& radiance);
+
+  std::span<const PathStart> starts_;
+  int depth_ = 0;  // surfaces before the present ones
+  std::vector<PathSample> samples_;
+  size_t bounces_each_ = 0;
+  std::vector<glm::vec3> bounces_;
+  std::vector<Path> paths_, next_paths_;  // at hand; of the next depth
+  SamplerBlock samplers_;                 // of the paths at hand
+  Numbers choose_punctual_, point_on_emitter_, choose_lobe_, bsdf_direction_, roulette_;
+  std::vector<Ray> rays_, next_rays_;
+  std::vector<Hit> hits_;
+  std::vector<Pending> pending_;
+  std::vector<Ray> shadow_rays_;
+  std::vector<uint8_t> blocked_;
+};
+
+/// Estimates the rendering equation (thesis eq. 1.17) along paths from the camera: at each vertex the light is sampled
+/// (next-event estimation) and the BSDF is; where both find emissive triangles, they are weighed by the power heuristic
+/// (Veach and Guibas 1995). Immutable, keeps references; any number of threads may trace at once.
+///
+/// Many paths go from surface to surface in step, so that their rays are cast in packets: on the Cornell box shadow
+/// rays then cost half as much, and no path's arithmetic waits for a ray.
+class Integrator {
+ public:
+  /// @param bounces number of bounces whose light is kept apart, see Wave::bounces
+  Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
+             const Transport& transport, int bounces = 0);
+
+  /// Traces one path from each start. @param counts is added to
+  void trace(std::span<const PathStart> starts, Wave& wave, PathCounts& counts) const;
+
+ private:
+  void arrive(Wave& wave, size_t i, const PathVertex& vertex) const;
+  void scatter_light(Wave& wave, size_t i, const PathVertex& vertex) const;
+  void add_punctual(Wave& wave, size_t i, const PathVertex& vertex, const class Bsdf& bsdf) const;
+  void add_emitters(Wave& wave, size_t i, const PathVertex& vertex, const class Bsdf& bsdf) const;
+  void scatter(Wave& wave, size_t i, const PathVertex& vertex, const class Bsdf& bsdf) const;
+  glm::vec3 emitted(const Wave::Path& path, const PathVertex& vertex) const;
+  void settle_shadows(Wave& wave, PathCounts& counts) const;
+  void follow(Wave& wave, PathCounts& counts) const;
 
   const Surfaces& surfaces_;
   const Caster& caster_;
@@ -69,6 +139,7 @@ class Integrator {
   glm::vec3 background_;
   int max_depth_;
   bool compensates_;
+  size_t bounces_;
   bool light_can_be_hit_;  // there are emissive surfaces or a background
 };
 

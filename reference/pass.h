@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
@@ -80,15 +81,23 @@ class PassRenderer {
   void load(StateReader& reader);
 
  private:
-  /// False when it was cancelled: asked at every pixel, because a tile of many samples takes seconds.
+  struct Room;
+  /// False when it was cancelled: asked at every wave, because a tile of many samples takes seconds.
   bool render_tile(size_t tile, const Progress& progress, PassCounts& counts);
-  void render_pixel(int x, int y, PassCounts& counts);
+  void render_pixels(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts);
+  void render_samples(std::span<const glm::ivec2> pixels, int first, int samples, Room& room, PassCounts& counts) const;
+  void see(std::span<const glm::ivec2> pixels, int first, int samples, Room& room, PathCounts& counts) const;
+  void add_irradiance(size_t samples, Room& room, PathCounts& counts) const;
+  size_t index(const glm::ivec2& pixel) const {
+    return static_cast<size_t>(pixel.y) * static_cast<size_t>(view_.width) + static_cast<size_t>(pixel.x);
+  }
 
   const View& view_;
+  const Caster& caster_;
   RayGenerator rays_;
   Surfaces surfaces_;
   Integrator integrator_;
-  ExtraTracer extra_;
+  ExtraLayers extra_;
   uint64_t seed_;
   TileGrid grid_;
   std::vector<size_t> tiles_;  // of the part

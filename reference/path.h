@@ -15,6 +15,9 @@ namespace voxref {
 
 struct PathOptions {
   int spp = 64;  ///< samples per pixel; with noise or seconds: the most that is taken, 0 = no limit
+  /// Independent randomizations among which a known number of samples is divided, whose scatter is the standard error.
+  /// Fewer are better stratified, and so less noisy, but know their error less well; one does not know it at all.
+  int randomizations = 16;
   std::optional<double>
       noise;  ///< stop when mean standard error / mean value, as luminance over the image, is at most this
   std::optional<double> seconds;  ///< stop after this time

@@ -52,6 +52,7 @@ inline uint32_t sobol_second_reversed(uint32_t index) {
 
 /// The upper 24 bits as a float in [0,1), every value exact.
 inline float unit_float(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+inline glm::vec2 unit_floats(const glm::uvec2& bits) { return {unit_float(bits.x), unit_float(bits.y)}; }
 
 /// The key of randomization `number` of pixel (x,y). Keys do not depend on the image's size.
 inline uint64_t randomization_key(uint64_t seed, uint32_t x, uint32_t y, uint32_t number) {
@@ -65,32 +66,37 @@ class Sampler {
   Sampler(uint64_t key, uint32_t index) : key_(key), reversed_index_(reverse_bits(index)) {}
 
   /// All 32 bits of a one-dimensional set, for choices among many.
-  uint32_t bits_1d(uint32_t dimension) const {
-    const uint64_t seeds = dimension_seeds(dimension);
-    return reverse_bits(scramble_reversed(shuffled_index(seeds), static_cast<uint32_t>(seeds >> 32)));
-  }
+  uint32_t bits_1d(uint32_t dimension) const { return bits_1d(key_, reversed_index_, dimension); }
   float get_1d(uint32_t dimension) const { return unit_float(bits_1d(dimension)); }  ///< in [0,1)
 
   /// All 32 bits of both numbers of a two-dimensional set.
-  glm::uvec2 bits_2d(uint32_t dimension) const {
-    const uint64_t seeds = dimension_seeds(dimension);
-    const uint32_t index = shuffled_index(seeds);
+  glm::uvec2 bits_2d(uint32_t dimension) const { return bits_2d(key_, reversed_index_, dimension); }
+  /// The same as numbers in [0,1).
+  glm::vec2 get_2d(uint32_t dimension) const { return unit_floats(bits_2d(dimension)); }
+
+  // What a sampler is made of, for those who work on many at once (SamplerBlock).
+  uint64_t key() const { return key_; }
+  uint32_t reversed_index() const { return reversed_index_; }
+  static uint32_t bits_1d(uint64_t key, uint32_t reversed_index, uint32_t dimension) {
+    const uint64_t seeds = dimension_seeds(key, dimension);
+    return reverse_bits(scramble_reversed(shuffled_index(reversed_index, seeds), static_cast<uint32_t>(seeds >> 32)));
+  }
+  static glm::uvec2 bits_2d(uint64_t key, uint32_t reversed_index, uint32_t dimension) {
+    const uint64_t seeds = dimension_seeds(key, dimension);
+    const uint32_t index = shuffled_index(reversed_index, seeds);
     const uint32_t x = scramble_reversed(index, static_cast<uint32_t>(seeds >> 32));
     // A third seed from the two: the upper half of a product depends on all bits of both.
     const uint64_t second_seeds = (seeds | 1) * 0x9e3779b97f4a7c15u;
     const uint32_t y = scramble_reversed(sobol_second_reversed(index), static_cast<uint32_t>(second_seeds >> 32));
     return {reverse_bits(x), reverse_bits(y)};
   }
-  /// The same as numbers in [0,1).
-  glm::vec2 get_2d(uint32_t dimension) const {
-    const glm::uvec2 bits = bits_2d(dimension);
-    return {unit_float(bits.x), unit_float(bits.y)};
-  }
 
  private:
-  uint64_t dimension_seeds(uint32_t dimension) const { return mix_bits(key_ + dimension * 0x9e3779b97f4a7c15u); }
-  uint32_t shuffled_index(uint64_t seeds) const {
-    return reverse_bits(scramble_reversed(reversed_index_, static_cast<uint32_t>(seeds)));
+  static uint64_t dimension_seeds(uint64_t key, uint32_t dimension) {
+    return mix_bits(key + dimension * 0x9e3779b97f4a7c15u);
+  }
+  static uint32_t shuffled_index(uint32_t reversed_index, uint64_t seeds) {
+    return reverse_bits(scramble_reversed(reversed_index, static_cast<uint32_t>(seeds)));
   }
 
   uint64_t key_;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
@@ -113,6 +114,8 @@ struct Caster::Impl {
     device = nullptr;
   }
 
+  const Geometry& geometry(unsigned id) const { return id == 0 ? opaque : filtered; }
+
   /// Geometry ids follow the order of attachment; an empty geometry is attached too, so that ids stay 0 and 1.
   void attach(const Scene& source, Geometry& geometry, bool with_filter) {
     RTCGeometry handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -154,9 +157,41 @@ void set_ray(RTCRay& target, const Ray& ray) {
   target.flags = 0;
 }
 
+constexpr size_t packet_size = 16;  // Embree cuts it up where the processor's registers are narrower
+
+/// Which rays of a packet there are: Embree's -1, or 0.
+struct alignas(64) PacketMask {
+  int valid[packet_size];
+
+  explicit PacketMask(size_t count) {
+    for (size_t i = 0; i < packet_size; ++i) valid[i] = i < count ? -1 : 0;
+  }
+};
+
+/// Fills a packet; where there are fewer rays the rest is left as it is.
+void set_rays(RTCRay16& target, std::span<const Ray> rays) {
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    target.org_x[i] = ray.origin.x;
+    target.org_y[i] = ray.origin.y;
+    target.org_z[i] = ray.origin.z;
+    target.tnear[i] = ray.tmin;
+    target.dir_x[i] = ray.direction.x;
+    target.dir_y[i] = ray.direction.y;
+    target.dir_z[i] = ray.direction.z;
+    target.time[i] = 0.0f;
+    target.tfar[i] = ray.tmax;
+    target.mask[i] = ~0u;
+    target.id[i] = 0;
+    target.flags[i] = 0;
+  }
+}
+
 #if RTC_VERSION_MAJOR >= 4
 void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
 void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+void intersect(RTCScene scene, const PacketMask& mask, RTCRayHit16& rays) { rtcIntersect16(mask.valid, scene, &rays); }
+void occlude(RTCScene scene, const PacketMask& mask, RTCRay16& rays) { rtcOccluded16(mask.valid, scene, &rays); }
 #else
 void intersect(RTCScene scene, RTCRayHit& ray) {
   RTCIntersectContext context;
@@ -167,6 +202,16 @@ void occlude(RTCScene scene, RTCRay& ray) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene, &context, &ray);
+}
+void intersect(RTCScene scene, const PacketMask& mask, RTCRayHit16& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect16(mask.valid, scene, &context, &rays);
+}
+void occlude(RTCScene scene, const PacketMask& mask, RTCRay16& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(mask.valid, scene, &context, &rays);
 }
 #endif
 
@@ -183,8 +228,7 @@ Hit Caster::closest(const Ray& ray) const {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   intersect(impl_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const Geometry& geometry = query.hit.geomID == 0 ? impl_->opaque : impl_->filtered;
-  return {geometry.triangles[query.hit.primID], {query.hit.u, query.hit.v}, query.ray.tfar};
+  return {impl_->geometry(query.hit.geomID).triangles[query.hit.primID], {query.hit.u, query.hit.v}, query.ray.tfar};
 }
 
 bool Caster::occluded(const Ray& ray) const {
@@ -192,6 +236,38 @@ bool Caster::occluded(const Ray& ray) const {
   set_ray(query, ray);
   occlude(impl_->scene, query);
   return query.tfar < 0.0f;  // Embree marks an occluded ray with tfar = -infinity
+}
+
+void Caster::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
+  assert(rays.size() == hits.size());
+  RTCRayHit16 query;
+  for (size_t first = 0; first < rays.size(); first += packet_size) {
+    const size_t count = std::min(packet_size, rays.size() - first);
+    set_rays(query.ray, rays.subspan(first, count));
+    for (size_t i = 0; i < count; ++i) {
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    intersect(impl_->scene, PacketMask(count), query);
+    for (size_t i = 0; i < count; ++i) {
+      hits[first + i] = {};
+      if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
+        hits[first + i] = {impl_->geometry(query.hit.geomID[i]).triangles[query.hit.primID[i]],
+                           {query.hit.u[i], query.hit.v[i]},
+                           query.ray.tfar[i]};
+    }
+  }
+}
+
+void Caster::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
+  assert(rays.size() == blocked.size());
+  RTCRay16 query;
+  for (size_t first = 0; first < rays.size(); first += packet_size) {
+    const size_t count = std::min(packet_size, rays.size() - first);
+    set_rays(query, rays.subspan(first, count));
+    occlude(impl_->scene, PacketMask(count), query);
+    for (size_t i = 0; i < count; ++i) blocked[first + i] = query.tfar[i] < 0.0f;
+  }
 }
 
 float Caster::surface_offset() const { return impl_->offset; }

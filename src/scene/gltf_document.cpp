@@ -110,10 +110,22 @@ bool file_exists(const std::string& path, void*) {
 
 std::string same_path(const std::string& path, void*) { return path; }
 
-bool read_external(std::vector<unsigned char>* out, std::string*, const std::string& path, void* content) {
+/// What lies beside the glTF file, in the order in which tinygltf reads it: buffers first, then images.
+struct ExternalFiles {
+  std::string content;
+  std::vector<size_t> buffer_lengths;  // as the document states them
+  size_t read = 0;
+};
+
+bool read_external(std::vector<unsigned char>* out, std::string*, const std::string& path, void* context) {
+  ExternalFiles& files = *static_cast<ExternalFiles*>(context);
   const std::string bytes = read_file(path);
   out->assign(bytes.begin(), bytes.end());
-  static_cast<std::string*>(content)->append(bytes);
+  // A file may be longer than the buffer in it (glTF 2.0, 3.6.1.1), which tinygltf takes for an error.
+  if (files.read < files.buffer_lengths.size() && out->size() > files.buffer_lengths[files.read])
+    out->resize(files.buffer_lengths[files.read]);
+  ++files.read;
+  files.content += bytes;
   return true;
 }
 
@@ -126,7 +138,10 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
 
 tinygltf::Model read_model(GltfDocument& document) {
   tinygltf::TinyGLTF reader;
-  std::string external;
+  ExternalFiles external;
+  for (const GltfValue& buffer : document.list("buffers"))
+    if (const std::optional<GltfValue> uri = buffer.find("uri"); uri && !uri->text().starts_with("data:"))
+      external.buffer_lengths.push_back(buffer.at("byteLength").integer(1));
   reader.SetFsCallbacks({file_exists, same_path, read_external, nullptr, &external});
   reader.SetImageLoader(keep_encoded, nullptr);
   tinygltf::Model model;
@@ -139,7 +154,7 @@ tinygltf::Model read_model(GltfDocument& document) {
           ? reader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()),
                                         size, folder)
           : reader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, folder);
-  document.content += external;
+  document.content += external.content;
   if (loaded) return model;
   // It stops at the first thing that it cannot read, so the number of things it has read tells which.
   std::string place = "document";

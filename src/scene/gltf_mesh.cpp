@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/mat3x2.hpp>
 #include <numeric>
 
 #include "error.h"
@@ -184,8 +185,10 @@ void finish_tangents(Geometry& geometry, const Material& material) {
     return;
   }
   if (geometry.tangents.empty()) {
-    TangentSpace space = compute_tangents(geometry.positions, geometry.normals,
-                                          geometry.uv[material.normal_texture.uv_set], geometry.triangles);
+    // Along the texture as it is looked up, KHR_texture_transform included.
+    std::vector<glm::vec2> uv = geometry.uv[material.normal_texture.uv_set];
+    for (glm::vec2& at : uv) at = material.normal_texture.transform * glm::vec3(at, 1.0f);
+    TangentSpace space = compute_tangents(geometry.positions, geometry.normals, uv, geometry.triangles);
     select_vertices(geometry, space.source);
     geometry.tangents = std::move(space.tangents);
     geometry.triangles = std::move(space.triangles);

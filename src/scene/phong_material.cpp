@@ -8,15 +8,14 @@ namespace voxref {
 
 PhongMaterial phong_material(const Scene& scene, uint32_t triangle, const glm::vec2& uv, bool decode_textures) {
   const Material& m = scene.materials[scene.triangle_materials[triangle]];
-  const glm::uvec3& corners = scene.triangles[triangle];
-  const TextureReader texture(scene, corners, uv);
+  const MaterialInputs inputs = inputs_at(scene, scene.triangles[triangle], uv);
+  const TextureReader texture{scene, inputs.uv};
   const auto color = [&](TextureBinding binding) {
     binding.srgb = binding.srgb && decode_textures;
     return texture(binding);
   };
 
-  glm::vec3 base = glm::vec3(m.base_color * color(m.base_color_texture));
-  if (!scene.colors.empty()) base *= glm::vec3(interpolate(scene.colors, corners, uv));
+  const glm::vec3 base = glm::vec3(m.base_color * color(m.base_color_texture) * inputs.color);
   PhongMaterial phong;
   phong.emission = m.emission * glm::vec3(color(m.emission_texture));
   const glm::vec4 specular_color = color(m.specular_color_texture);

@@ -15,6 +15,9 @@ namespace {
 /// (cosine).
 constexpr float least_view_cosine = 1e-3f;
 
+/// What a core has to itself of today's processors, about.
+constexpr size_t bytes_of_cache = size_t{1} << 20;
+
 /// F0 of a dielectric of refractive index 1.5, as glTF fixes it.
 constexpr float dielectric_f0 = 0.04f;
 
@@ -57,42 +60,40 @@ Reflectance specular_glossiness(const Material& m, const glm::vec3& base, const 
   return r;
 }
 
-glm::vec4 base_color(const Scene& scene, const Material& m, const glm::uvec3& triangle, const glm::vec2& uv,
-                     const TextureReader& texture) {
-  glm::vec4 base = m.base_color * texture(m.base_color_texture);
-  if (!scene.colors.empty()) base *= interpolate(scene.colors, triangle, uv);
-  return base;
-}
-
 bool hole(const Material& m, float alpha) { return m.alpha_mode == AlphaMode::mask && alpha < m.alpha_cutoff; }
 
-/// The normal map's normal, in world space. @param normal unit, interpolated
-glm::vec3 mapped_normal(const Scene& scene, const Material& m, const glm::uvec3& triangle, const glm::vec2& uv,
-                        const glm::vec3& normal, const TextureReader& texture) {
-  const glm::vec4 tangent = interpolate(scene.tangents, triangle, uv);
+/// The normal map's normal, in world space. @param normal unit, interpolated @param tangent interpolated
+glm::vec3 mapped_normal(const Material& m, const glm::vec3& normal, const glm::vec4& tangent,
+                        const TextureReader& texture) {
   const glm::vec3 along = glm::vec3(tangent);
   const float length = glm::length(along);
   if (!(length > 0.0f)) return normal;
   // glTF: the bitangent comes from the interpolated vectors; handedness is the same over a triangle.
-  const glm::vec3 bitangent = scene.tangents[triangle.x].w * glm::cross(normal, along / length);
+  const glm::vec3 bitangent = std::copysign(1.0f, tangent.w) * glm::cross(normal, along / length);
   const glm::vec3 texel = 2.0f * glm::vec3(texture(m.normal_texture)) - 1.0f;
   const glm::vec3 mapped = m.normal_scale * (texel.x * along / length + texel.y * bitangent) + texel.z * normal;
   const float mapped_length = glm::length(mapped);
   return mapped_length > 0.0f ? mapped / mapped_length : normal;
 }
 
-/// Whether the material looks the same at all points of all its surfaces; its normal map apart.
-bool is_constant(const Scene& scene, const Material& m) {
-  if (!scene.colors.empty()) return false;
+/// What the material looks up; without what has no texture coordinates.
+std::vector<TextureBinding> bound_textures(const Scene& scene, const Material& m) {
+  std::vector<TextureBinding> bound;
   for (const TextureBinding* binding : {&m.base_color_texture, &m.metallic_roughness_texture, &m.specular_texture,
-                                        &m.specular_color_texture, &m.emission_texture})
-    if (*binding && !scene.uv[binding->uv_set].empty()) return false;
-  return true;
+                                        &m.specular_color_texture, &m.emission_texture, &m.normal_texture})
+    if (*binding && !scene.uv[static_cast<size_t>(binding->uv_set)].empty()) bound.push_back(*binding);
+  return bound;
 }
 
-MaterialPoint material_point(const Scene& scene, const Material& m, const glm::uvec3& corners, const glm::vec2& uv) {
-  const TextureReader texture(scene, corners, uv);
-  const glm::vec4 base = base_color(scene, m, corners, uv, texture);
+/// Whether the material looks the same at all points of all its surfaces; its normal map apart.
+bool is_constant(const Scene& scene, Material m) {
+  m.normal_texture = {};
+  return scene.colors.empty() && bound_textures(scene, m).empty();
+}
+
+MaterialPoint material_point(const Scene& scene, const Material& m, const MaterialInputs& inputs) {
+  const TextureReader texture{scene, inputs.uv};
+  const glm::vec4 base = m.base_color * texture(m.base_color_texture) * inputs.color;
   MaterialPoint point;
   point.base_color = glm::vec3(base);
   point.opacity = hole(m, base.a) ? 0.0f : 1.0f;
@@ -111,23 +112,24 @@ glm::vec3 unit_or(const glm::vec3& normal, const glm::vec3& fallback) {
 }  // namespace
 
 Materials::Materials(const Scene& scene) : scene_(scene), constant_(scene.materials.size()) {
-  // A constant material reads nothing of the triangle, so that any will do.
   for (size_t i = 0; i < constant_.size(); ++i)
-    if (is_constant(scene, scene.materials[i]))
-      constant_[i] = material_point(scene, scene.materials[i], glm::uvec3(0), glm::vec2(0.0f));
+    if (is_constant(scene, scene.materials[i])) constant_[i] = material_point(scene, scene.materials[i], {});
 }
 
 MaterialPoint Materials::point(uint32_t triangle, const glm::vec2& uv) const {
   const uint32_t material = scene_.triangle_materials[triangle];
   if (constant_[material]) return *constant_[material];
-  return material_point(scene_, scene_.materials[material], scene_.triangles[triangle], uv);
+  return point(material, inputs_at(scene_, scene_.triangles[triangle], uv));
+}
+
+MaterialPoint Materials::point(uint32_t material, const MaterialInputs& inputs) const {
+  return material_point(scene_, scene_.materials[material], inputs);
 }
 
 float alpha(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
-  const glm::uvec3& corners = scene.triangles[triangle];
-  return base_color(scene, scene.materials[scene.triangle_materials[triangle]], corners, uv,
-                    TextureReader(scene, corners, uv))
-      .a;
+  const Material& m = scene.materials[scene.triangle_materials[triangle]];
+  const MaterialInputs inputs = inputs_at(scene, scene.triangles[triangle], uv);
+  return m.base_color.a * TextureReader{scene, inputs.uv}(m.base_color_texture).a * inputs.color.a;
 }
 
 bool covered(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
@@ -136,42 +138,91 @@ bool covered(const Scene& scene, uint32_t triangle, const glm::vec2& uv) {
 
 Surfaces::Surfaces(const Scene& scene) : scene_(scene), materials_(scene) {
   triangles_.reserve(scene.triangles.size());
-  for (size_t i = 0; i < scene.triangles.size(); ++i) {
-    const glm::uvec3& corners = scene.triangles[i];
-    Triangle t{};
-    t.a = scene.positions[corners.x];
-    t.b = scene.positions[corners.y];
-    t.c = scene.positions[corners.z];
-    t.geometric_normal = glm::normalize(glm::cross(t.b - t.a, t.c - t.a));
-    t.material = scene.triangle_materials[i];
-    const bool normal_map = scene.materials[t.material].normal_texture && !scene.tangents.empty();
-    const glm::vec3& normal = scene.normals[corners.x];
-    if (!normal_map && normal == scene.normals[corners.y] && normal == scene.normals[corners.z])
-      t.shading_normal = unit_or(normal, t.geometric_normal);
-    triangles_.push_back(t);
+  for (uint32_t i = 0; i < scene.triangles.size(); ++i) triangles_.push_back(triangle(i));
+  vertices_.reserve(scene.positions.size());
+  for (uint32_t i = 0; i < scene.positions.size(); ++i) vertices_.push_back(vertex(i));
+  size_t bytes = triangles_.size() * sizeof(Triangle) + vertices_.size() * sizeof(Vertex);
+  for (const Material& m : scene.materials) textures_.push_back(bound_textures(scene, m));
+  for (const TextureImage& image : scene.images) bytes += image.texels8.size() + 2 * image.texels16.size();
+  beyond_caches_ = bytes > bytes_of_cache;
+}
+
+Surfaces::Triangle Surfaces::triangle(uint32_t index) const {
+  const glm::uvec3& corners = scene_.triangles[index];
+  const glm::vec3 &a = scene_.positions[corners.x], &b = scene_.positions[corners.y], &c = scene_.positions[corners.z];
+  Triangle t{};
+  t.corners = corners;
+  t.geometric_normal = glm::normalize(glm::cross(b - a, c - a));
+  t.material = scene_.triangle_materials[index];
+  const bool normal_map = scene_.materials[t.material].normal_texture && !scene_.tangents.empty();
+  const glm::vec3& normal = scene_.normals[corners.x];
+  if (!normal_map && normal == scene_.normals[corners.y] && normal == scene_.normals[corners.z])
+    t.shading_normal = unit_or(normal, t.geometric_normal);
+  return t;
+}
+
+Surfaces::Vertex Surfaces::vertex(uint32_t index) const {
+  Vertex v;
+  v.position = scene_.positions[index];
+  v.normal = scene_.normals[index];
+  if (!scene_.tangents.empty()) v.tangent = scene_.tangents[index];
+  for (size_t set = 0; set < v.uv.size(); ++set)
+    if (!scene_.uv[set].empty()) v.uv[set] = scene_.uv[set][index];
+  return v;
+}
+
+std::array<glm::vec2, 2> Surfaces::uv(const Triangle& triangle, const glm::vec2& barycentric) const {
+  const Vertex &a = vertices_[triangle.corners.x], &b = vertices_[triangle.corners.y],
+               &c = vertices_[triangle.corners.z];
+  return {interpolate(a.uv[0], b.uv[0], c.uv[0], barycentric), interpolate(a.uv[1], b.uv[1], c.uv[1], barycentric)};
+}
+
+void Surfaces::prefetch(std::span<const Hit> hits) const {
+  if (!beyond_caches_) return;
+  for (const Hit& hit : hits)
+    if (hit) __builtin_prefetch(&triangles_[hit.triangle]);
+  for (const Hit& hit : hits) {
+    if (!hit) continue;
+    const glm::uvec3& corners = triangles_[hit.triangle].corners;
+    for (const uint32_t corner : {corners.x, corners.y, corners.z}) __builtin_prefetch(&vertices_[corner]);
+  }
+  for (const Hit& hit : hits) {
+    if (!hit) continue;
+    const Triangle& triangle = triangles_[hit.triangle];
+    const std::vector<TextureBinding>& textures = textures_[triangle.material];
+    if (textures.empty()) continue;
+    const std::array<glm::vec2, 2> uv = this->uv(triangle, hit.uv);
+    for (const TextureBinding& binding : textures)
+      voxref::prefetch(scene_.images[static_cast<size_t>(binding.image)], binding,
+                       uv[static_cast<size_t>(binding.uv_set)]);
   }
 }
 
 /// Interpolated and mapped, on the counter-clockwise side.
-glm::vec3 Surfaces::shading_normal(const Hit& hit, const Triangle& triangle) const {
-  const glm::uvec3& corners = scene_.triangles[hit.triangle];
-  const glm::vec3 normal = unit_or(interpolate(scene_.normals, corners, hit.uv), triangle.geometric_normal);
+glm::vec3 Surfaces::shading_normal(const Triangle& triangle, const Hit& hit, const std::array<glm::vec2, 2>& uv) const {
+  if (triangle.shading_normal != glm::vec3(0.0f)) return triangle.shading_normal;
+  const Vertex &a = vertices_[triangle.corners.x], &b = vertices_[triangle.corners.y],
+               &c = vertices_[triangle.corners.z];
+  const glm::vec3 normal = unit_or(interpolate(a.normal, b.normal, c.normal, hit.uv), triangle.geometric_normal);
   const Material& m = scene_.materials[triangle.material];
   if (!m.normal_texture || scene_.tangents.empty()) return normal;
-  return mapped_normal(scene_, m, corners, hit.uv, normal, TextureReader(scene_, corners, hit.uv));
+  return mapped_normal(m, normal, interpolate(a.tangent, b.tangent, c.tangent, hit.uv), TextureReader{scene_, uv});
 }
 
 SurfacePoint Surfaces::point(const Hit& hit, const glm::vec3& to_viewer) const {
   const Triangle& triangle = triangles_[hit.triangle];
+  const glm::uvec3& corners = triangle.corners;
   SurfacePoint point;
   point.triangle = hit.triangle;
   point.material = triangle.material;
-  point.position = (1.0f - hit.uv.x - hit.uv.y) * triangle.a + hit.uv.x * triangle.b + hit.uv.y * triangle.c;
+  point.position =
+      interpolate(vertices_[corners.x].position, vertices_[corners.y].position, vertices_[corners.z].position, hit.uv);
   point.front = glm::dot(triangle.geometric_normal, to_viewer) >= 0.0f;
 
+  MaterialInputs inputs;
+  if (!textures_[triangle.material].empty()) inputs.uv = uv(triangle, hit.uv);
   const float side = point.front ? 1.0f : -1.0f;
-  const bool varies = triangle.shading_normal == glm::vec3(0.0f);
-  point.stored_normal = varies ? shading_normal(hit, triangle) : triangle.shading_normal;
+  point.stored_normal = shading_normal(triangle, hit, inputs.uv);
   glm::vec3 shading = side * point.stored_normal;
   const float view_cosine = glm::dot(shading, to_viewer);
   if (view_cosine < least_view_cosine)
@@ -183,10 +234,12 @@ SurfacePoint Surfaces::point(const Hit& hit, const glm::vec3& to_viewer) const {
     point.reflectance = material.reflectance;
     if (point.front || scene_.materials[triangle.material].double_sided) point.emission = material.emission;
   };
-  if (const MaterialPoint* constant = materials_.constant(triangle.material))
+  if (const MaterialPoint* constant = materials_.constant(triangle.material)) {
     take(*constant);
-  else
-    take(materials_.point(hit.triangle, hit.uv));
+  } else {
+    if (!scene_.colors.empty()) inputs.color = interpolate(scene_.colors, corners, hit.uv);
+    take(materials_.point(triangle.material, inputs));
+  }
   return point;
 }
 

@@ -1,12 +1,16 @@
 #pragma once
+#include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scene/ray.h"
 #include "scene/reflectance.h"
 #include "scene/scene.h"
+#include "scene/texture_reader.h"
 
 namespace voxref {
 
@@ -38,6 +42,7 @@ class Materials {
 
   /// @param uv barycentric coordinates in the triangle, as in Hit
   MaterialPoint point(uint32_t triangle, const glm::vec2& uv) const;
+  MaterialPoint point(uint32_t material, const MaterialInputs& inputs) const;
   /// What the material is everywhere; null when textures or vertex colours vary it.
   const MaterialPoint* constant(uint32_t material) const {
     return constant_[material] ? &*constant_[material] : nullptr;
@@ -56,21 +61,36 @@ class Surfaces {
 
   /// @param to_viewer unit
   SurfacePoint point(const Hit& hit, const glm::vec3& to_viewer) const;
+  /// Asks the processor for what point() will read of these hits, so that it waits for all of it at once rather than
+  /// for each hit in turn. Does nothing for scenes that fit in its caches.
+  void prefetch(std::span<const Hit> hits) const;
   const Materials& materials() const { return materials_; }
 
  private:
-  /// All that most hits need of a triangle, side by side in one line of the cache.
-  struct alignas(64) Triangle {
-    glm::vec3 a, b, c;
+  struct Triangle {
+    glm::uvec3 corners;
     glm::vec3 geometric_normal;  // unit, of the counter-clockwise side
     glm::vec3 shading_normal;    // unit where it is the same all over, else zero
     uint32_t material;
   };
-  glm::vec3 shading_normal(const Hit& hit, const Triangle& triangle) const;
+  /// All that a hit may need of a corner, side by side in one line of the cache.
+  struct alignas(64) Vertex {
+    glm::vec3 position{0.0f};
+    glm::vec3 normal{0.0f};
+    std::array<glm::vec2, 2> uv{};
+    glm::vec4 tangent{0.0f};
+  };
+  Triangle triangle(uint32_t index) const;
+  Vertex vertex(uint32_t index) const;
+  std::array<glm::vec2, 2> uv(const Triangle& triangle, const glm::vec2& barycentric) const;
+  glm::vec3 shading_normal(const Triangle& triangle, const Hit& hit, const std::array<glm::vec2, 2>& uv) const;
 
   const Scene& scene_;
   Materials materials_;
   std::vector<Triangle> triangles_;
+  std::vector<Vertex> vertices_;
+  std::vector<std::vector<TextureBinding>> textures_;  // that each material reads
+  bool beyond_caches_ = false;
 };
 
 /// Alpha of the base colour, whatever the material's alpha mode makes of it.

@@ -33,6 +33,8 @@ struct TextureBinding {
 /// Looks `binding` up at texture coordinate `uv` (before its transform): texels are decoded to linear values first,
 /// then interpolated bilinearly at full resolution (texel centres at half-integers) unless the sampler says NEAREST.
 /// @param uv finite; components in [0,1] per repetition
-glm::vec4 lookup(const TextureImage& image, const TextureBinding& binding, glm::vec2 uv);
+glm::vec4 lookup(const TextureImage& image, const TextureBinding& binding, const glm::vec2& uv);
+/// Asks the processor for the texels that lookup() will read, without waiting for them.
+void prefetch(const TextureImage& image, const TextureBinding& binding, const glm::vec2& uv);
 
 }  // namespace voxref

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -9,29 +10,42 @@
 
 namespace voxref {
 
-/// A vertex attribute at barycentric coordinates.
+/// Value between a triangle's corners, at barycentric coordinates.
+template <class T>
+T interpolate(const T& a, const T& b, const T& c, const glm::vec2& uv) {
+  return (1.0f - uv.x - uv.y) * a + uv.x * b + uv.y * c;
+}
 template <class T>
 T interpolate(const std::vector<T>& attribute, const glm::uvec3& triangle, const glm::vec2& uv) {
-  return (1.0f - uv.x - uv.y) * attribute[triangle.x] + uv.x * attribute[triangle.y] + uv.y * attribute[triangle.z];
+  return interpolate(attribute[triangle.x], attribute[triangle.y], attribute[triangle.z], uv);
 }
 
-/// Looks bindings up at one point of a triangle. Keeps references to its arguments.
-class TextureReader {
- public:
-  TextureReader(const Scene& scene, const glm::uvec3& triangle, const glm::vec2& barycentric)
-      : scene_(scene), triangle_(triangle), barycentric_(barycentric) {}
+/// What of a surface point a material may read.
+struct MaterialInputs {
+  std::array<glm::vec2, 2> uv{};  ///< texture coordinate sets; zero where the scene has none
+  glm::vec4 color{1.0f};          ///< linear; white where the scene has none
+};
+
+/// @param uv barycentric coordinates
+inline MaterialInputs inputs_at(const Scene& scene, const glm::uvec3& triangle, const glm::vec2& uv) {
+  MaterialInputs inputs;
+  for (size_t set = 0; set < inputs.uv.size(); ++set)
+    if (!scene.uv[set].empty()) inputs.uv[set] = interpolate(scene.uv[set], triangle, uv);
+  if (!scene.colors.empty()) inputs.color = interpolate(scene.colors, triangle, uv);
+  return inputs;
+}
+
+/// Looks a material's bindings up at one point.
+struct TextureReader {
+  const Scene& scene;
+  const std::array<glm::vec2, 2>& uv;
 
   /// White where nothing is bound.
   glm::vec4 operator()(const TextureBinding& binding) const {
-    if (!binding || scene_.uv[binding.uv_set].empty()) return glm::vec4(1.0f);
-    return lookup(scene_.images[binding.image], binding,
-                  interpolate(scene_.uv[binding.uv_set], triangle_, barycentric_));
+    const auto set = static_cast<size_t>(binding.uv_set);
+    if (!binding || scene.uv[set].empty()) return glm::vec4(1.0f);
+    return lookup(scene.images[static_cast<size_t>(binding.image)], binding, uv[set]);
   }
-
- private:
-  const Scene& scene_;
-  const glm::uvec3& triangle_;
-  const glm::vec2& barycentric_;
 };
 
 }  // namespace voxref

@@ -194,6 +194,7 @@ TEST_CASE("an image's header says where it comes from", "[cli]") {
   CHECK(value("version") == "0.1.0");
   CHECK(value("seed") == "7");
   CHECK(json::parse(value("path")) == json({{"spp", 2},
+                                            {"randomizations", 16},
                                             {"noise", nullptr},
                                             {"time", nullptr},
                                             {"max_depth", nullptr},

@@ -100,6 +100,39 @@ TEST_CASE("the caster finds what a search over all triangles finds", "[caster]")
   CHECK(different <= 1);
 }
 
+TEST_CASE("packets of rays find what single rays find", "[caster]") {
+  const Scene scene = triangle_soup(300), mask = square_with_hole();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  for (const Scene* at : {&scene, &mask}) {
+    const Caster caster(*at);
+    // 37 of them: two whole packets, and one with room left. Every third is a segment that ends early.
+    std::vector<Ray> rays;
+    for (int i = 0; i < 37; ++i) {
+      Ray& ray = rays.emplace_back();
+      ray.origin = 1.5f * glm::vec3(uniform(random), uniform(random), uniform(random));
+      ray.direction =
+          at->bounds().center() - ray.origin + 0.5f * glm::vec3(uniform(random), uniform(random), uniform(random));
+      if (i % 3 == 0) ray.tmax = 0.4f;
+    }
+    std::vector<Hit> hits(rays.size());
+    std::vector<uint8_t> blocked(rays.size());
+    caster.closest(rays, hits);
+    caster.occluded(rays, blocked);
+    int found = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const Hit single = caster.closest(rays[i]);
+      CHECK(hits[i].triangle == single.triangle);
+      if (single) CHECK(hits[i].t == Approx(single.t).epsilon(1e-5));  // other instructions, other rounding
+      CHECK(bool(blocked[i]) == bool(single));
+      found += bool(single);
+    }
+    CHECK(found > 5);
+    CHECK(found < 37);
+    caster.closest(std::span<const Ray>(), std::span<Hit>());
+  }
+}
+
 TEST_CASE("a segment's ends bound what occludes it", "[caster]") {
   const Scene scene = square_with_hole();
   const Caster caster(scene);

@@ -358,6 +358,34 @@ TEST_CASE("External files are found beside the file, and the hash covers them in
   CHECK(scene.sha256 == voxref::sha256(std::as_bytes(std::span(all))));
 }
 
+TEST_CASE("An external file may be longer than its buffer, and not shorter", "[gltf]") {
+  const TemporaryFolder folder;
+  GltfBuilder builder = unit_square();
+  builder.json["buffers"] = {{{"byteLength", builder.bytes.size()}, {"uri", "data.bin"}}};
+  const std::string text = builder.text();
+  folder.write("data.bin", builder.bytes + "padding");
+  CHECK(area_vector(voxref::load_gltf(folder.write("a.gltf", text))) == glm::vec3(0, 0, 1));
+  folder.write("data.bin", builder.bytes.substr(1));
+  CHECK_THROWS_AS(voxref::load_gltf(folder.write("a.gltf", text)), voxref::Error);
+}
+
+TEST_CASE("Computed tangents follow the texture as its transform turns it", "[gltf]") {
+  GltfBuilder builder = unit_square();
+  builder.primitive()["attributes"]["TEXCOORD_0"] = builder.accessor<float>({0, 1, 1, 1, 1, 0, 0, 0}, 2);
+  builder.json["images"] =
+      R"([{"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR4nGP438DgwMjEzAIADNUByn7objcAAAAASUVORK5CYII="}])"_json;
+  builder.json["textures"] = R"([{"source": 0}])"_json;
+  builder.json["materials"] = R"([{"normalTexture": {"index": 0}}])"_json;
+  builder.primitive()["material"] = 0;
+  for (const glm::vec4& tangent : load(builder).tangents) CHECK(glm::vec3(tangent) == glm::vec3(1, 0, 0));
+  // A quarter turn: (u, v) is looked up at (v, -u), so that what was along u is now along v, which points down.
+  constexpr double quarter = 1.5707963267948966;
+  builder.json["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"] = {{"rotation", quarter}};
+  // cos of the rounded angle is 4e-8, not 0.
+  for (const glm::vec4& tangent : load(builder).tangents)
+    CHECK(glm::distance(glm::vec3(tangent), glm::vec3(0, -1, 0)) < 1e-6f);
+}
+
 TEST_CASE("Objects of named nodes and below them are dynamic", "[gltf]") {
   GltfBuilder builder = unit_square();
   builder.json["nodes"] = R"([{"name": "arm", "children": [1]}, {"mesh": 0}, {"mesh": 0}])"_json;

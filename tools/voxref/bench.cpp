@@ -77,7 +77,7 @@ void bench_rays(SceneBench& bench, const Scene& scene, const Caster& caster, con
   const PathResult warm_up = timed_path(scene, caster, view, warm_up_seconds, 0, progress);
   bench.occlusion_share = static_cast<double>(warm_up.occlusion_rays) / static_cast<double>(warm_up.rays);
   constexpr size_t pool = size_t{1} << 20;  // 36 MiB: beyond the caches, as a path tracer's rays come from nowhere near
-  const std::vector<BareRay> rays = incoherent_rays(scene, caster, pool, bench.occlusion_share);
+  const std::vector<BareRay> rays = walk_rays(scene, caster, view, pool, bench.occlusion_share);
   std::vector<double> path, bare, ratio;
   for (int round = 0; round < options.rounds; ++round) {
     const PathResult result = timed_path(scene, caster, view, options.seconds, round, progress);
@@ -181,12 +181,11 @@ void add_bench(CLI::App& program, Run& run) {
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
   command->footer(
-      "The bare loop casts as many rays as the path tracer did, with the same threads, and does nothing else. Its "
-      "rays\n"
-      "are prepared beforehand, from random surface points: in cosine-distributed directions (closest hit) and to a\n"
-      "light (occlusion), in the proportion in which the path tracer casts these two kinds. It calls Embree through\n"
-      "the same thin class as the path tracer. A scene without light gets a sun that stands 45 degrees high, for "
-      "both.\n\n"
+      "The bare loop casts as many rays as the path tracer did, one by one, with the same threads, and does nothing\n"
+      "else. Its rays are prepared beforehand by walking the scene as a path tracer does: from what the camera sees,\n"
+      "in cosine-distributed directions (closest hit) from surface to surface, and from each to a light (occlusion),\n"
+      "in the proportion in which the path tracer casts these two kinds. It calls Embree through the same thin class,\n"
+      "one ray at a time. A scene without light gets a sun that stands 45 degrees high, for both.\n\n"
       "Example:\n  voxref bench scenes/cornell_box.glb --rounds 9");
   on_run(command, run, [options] { return run_bench(*options); });
 }

@@ -11,34 +11,34 @@
 #include "cone/cone_set.h"
 #include "error.h"
 #include "parallel.h"
+#include "scene/surface.h"
 
 namespace voxref {
 
 namespace {
 
-/// Draws points that are uniform over the area of some triangles of a scene.
-class AreaSampler {
+/// Draws points that are uniform over the area of a scene's emissive triangles.
+class EmitterSampler {
  public:
-  AreaSampler(const Scene& scene, std::vector<uint32_t> triangles) : scene_(scene), triangles_(std::move(triangles)) {
+  explicit EmitterSampler(const Scene& scene) : scene_(scene) {
     double area = 0;
-    for (const uint32_t triangle : triangles_) area_up_to_.push_back(area += glm::length(cross_product(triangle)));
+    for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
+      if (!scene.materials[scene.triangle_materials[i]].emissive()) continue;
+      triangles_.push_back(i);
+      area_up_to_.push_back(area += glm::length(cross_product(i)));
+    }
   }
 
   bool empty() const { return area_up_to_.empty() || !(area_up_to_.back() > 0); }
 
-  struct Sample {
-    glm::vec3 point, normal;
-  };
-  Sample operator()(std::mt19937_64& random) const {
+  glm::vec3 operator()(std::mt19937_64& random) const {
     const double at = area_up_to_.back() * uniform(random);
     const auto found = std::upper_bound(area_up_to_.begin(), area_up_to_.end() - 1, at);
-    const uint32_t triangle = triangles_[static_cast<size_t>(found - area_up_to_.begin())];
-    const glm::uvec3 corners = scene_.triangles[triangle];
+    const glm::uvec3 corners = scene_.triangles[triangles_[static_cast<size_t>(found - area_up_to_.begin())]];
     const float root = std::sqrt(static_cast<float>(uniform(random)));  // Osada et al. 2002, section 4.2
     const float v = root * static_cast<float>(uniform(random));
-    return {(1 - root) * scene_.positions[corners.x] + (root - v) * scene_.positions[corners.y] +
-                v * scene_.positions[corners.z],
-            glm::normalize(cross_product(triangle))};
+    return (1 - root) * scene_.positions[corners.x] + (root - v) * scene_.positions[corners.y] +
+           v * scene_.positions[corners.z];
   }
 
   static double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
@@ -55,53 +55,57 @@ class AreaSampler {
   std::vector<double> area_up_to_;
 };
 
-AreaSampler sampler_of(const Scene& scene, bool emissive_only) {
-  std::vector<uint32_t> triangles;
-  for (uint32_t i = 0; i < scene.triangles.size(); ++i)
-    if (!emissive_only || scene.materials[scene.triangle_materials[i]].emissive()) triangles.push_back(i);
-  return {scene, std::move(triangles)};
-}
-
 glm::vec3 cosine_direction(const glm::vec3& normal, std::mt19937_64& random) {
-  const float radius = std::sqrt(static_cast<float>(AreaSampler::uniform(random)));
-  const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(AreaSampler::uniform(random));
+  const float radius = std::sqrt(static_cast<float>(EmitterSampler::uniform(random)));
+  const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(EmitterSampler::uniform(random));
   const glm::vec3 local(radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - radius * radius));
   return frame_around(normal) * local;
 }
 
-/// From a point to a light picked at random; there must be one.
-Ray shadow_ray(const Scene& scene, const Caster& caster, const AreaSampler::Sample& from, const AreaSampler& emitters,
+/// From a surface to a light picked at random; there must be one.
+Ray shadow_ray(const Scene& scene, const Caster& caster, const SurfacePoint& from, const EmitterSampler& emitters,
                std::mt19937_64& random) {
   const size_t choices = scene.lights.size() + (emitters.empty() ? 0 : 1);
   const size_t chosen = random() % choices;
   if (chosen < scene.lights.size() && scene.lights[chosen].type == LightType::directional)
-    return caster.leave(from.point, from.normal, -scene.lights[chosen].direction);
-  const glm::vec3 target = chosen < scene.lights.size() ? scene.lights[chosen].position : emitters(random).point;
-  const glm::vec3 side = glm::dot(target - from.point, from.normal) < 0 ? -from.normal : from.normal;
+    return caster.leave(from.position, from.geometric_normal, -scene.lights[chosen].direction);
+  const glm::vec3 target = chosen < scene.lights.size() ? scene.lights[chosen].position : emitters(random);
   constexpr float just_before = 0.999f;  // so that an emitter does not shadow itself
-  const glm::vec3 origin = from.point + caster.surface_offset() * side;
+  const glm::vec3 origin = from.position + caster.surface_offset() * from.geometric_normal;
   return {origin, target - origin, 0.0f, just_before};
 }
 
+float largest(const glm::vec3& v) { return std::max({v.r, v.g, v.b}); }
+
 }  // namespace
 
-std::vector<BareRay> incoherent_rays(const Scene& scene, const Caster& caster, size_t count, double occlusion_share) {
-  const AreaSampler everywhere = sampler_of(scene, false);
-  if (everywhere.empty()) throw Error(scene.file, "has no surface to cast rays from");
-  const AreaSampler emitters = sampler_of(scene, true);
+std::vector<BareRay> walk_rays(const Scene& scene, const Caster& caster, const View& view, size_t count,
+                               double occlusion_share) {
+  const EmitterSampler emitters(scene);
   if (occlusion_share > 0 && scene.lights.empty() && emitters.empty())
     throw Error(scene.file, "has no light to cast rays to");
+  const Surfaces surfaces(scene);
+  const RayGenerator camera(view);
   std::mt19937_64 random(1);
   std::vector<BareRay> rays;
   rays.reserve(count);
-  AreaSampler::Sample from = everywhere(random);
-  for (size_t i = 0; i < count; ++i) {
-    const double before = occlusion_share * static_cast<double>(i);
-    if (std::floor(before + occlusion_share) > std::floor(before)) {
-      rays.push_back({shadow_ray(scene, caster, from, emitters, random), true});
-    } else {
-      from = everywhere(random);
-      rays.push_back({caster.leave(from.point, from.normal, cosine_direction(from.normal, random)), false});
+  const size_t pixels = static_cast<size_t>(view.width) * static_cast<size_t>(view.height);
+  double owed = 0.0;  // shadow rays, for those closest-hit rays that were cast
+  size_t misses = 0;  // pixels in a row that see nothing
+  for (size_t pixel = 0; rays.size() < count; pixel = (pixel + 1) % pixels) {
+    const size_t column = pixel % static_cast<size_t>(view.width), row = pixel / static_cast<size_t>(view.width);
+    Ray ray = camera(glm::vec2(column, row) + 0.5f);
+    Hit hit = caster.closest(ray);
+    misses = hit ? 0 : misses + 1;
+    if (misses == pixels) throw Error(scene.file, "has no surface in view to cast rays from");
+    while (hit && rays.size() < count) {
+      const SurfacePoint point = surfaces.point(hit, -ray.direction);
+      for (owed += occlusion_share / (1.0 - occlusion_share); owed >= 1.0; owed -= 1.0)
+        rays.push_back({shadow_ray(scene, caster, point, emitters, random), true});
+      ray = caster.leave(point.position, point.geometric_normal, cosine_direction(point.geometric_normal, random));
+      hit = caster.closest(ray);
+      rays.push_back({ray, false});
+      if (EmitterSampler::uniform(random) >= largest(hemispherical_albedo(point.reflectance))) break;
     }
   }
   return rays;

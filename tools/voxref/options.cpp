@@ -106,6 +106,14 @@ void add_path_options(CLI::App& command, PathOptions& options) {
                    [&options](const std::string& text) {
                      options.spp = static_cast<int>(parse_integer("--spp", text, 1, most_spp));
                    });
+  add_value_option(command, "--randomizations", "N",
+                   "independent ones that share the samples and tell their error (default: 16); fewer: less noise, a "
+                   "rougher error; not with --noise, --time",
+                   [&options](const std::string& text) {
+                     constexpr int most_randomizations = 1 << 16;
+                     options.randomizations =
+                         static_cast<int>(parse_integer("--randomizations", text, 1, most_randomizations));
+                   });
   add_value_option(command, "--noise", "R", "until mean standard error / mean value is at most R",
                    [&options](const std::string& text) { options.noise = parse_number("--noise", text, 1e-6, 1e6); });
   add_value_option(command, "--time", "S", "for S seconds",
@@ -119,7 +127,7 @@ void add_path_options(CLI::App& command, PathOptions& options) {
   });
   add_value_option(command, "--bounces", "N", "layers bounce.1 ... bounce.N too: indirect light by bounce",
                    [&options](const std::string& text) {
-                     constexpr int most_bounces = 64;  // each costs a path of its own
+                     constexpr int most_bounces = 64;
                      options.extra.bounces = static_cast<int>(parse_integer("--bounces", text, 1, most_bounces));
                    });
   command.add_flag("--irradiance", options.extra.irradiance, "layer irradiance too: what arrives at the first hit");

@@ -70,6 +70,7 @@ nlohmann::json describe(const SceneOptions& options) {
 
 nlohmann::json describe(const PathOptions& options) {
   return {{"spp", options.spp > 0 ? nlohmann::json(options.spp) : nlohmann::json()},
+          {"randomizations", options.randomizations},
           {"noise", given(options.noise)},
           {"time", given(options.seconds)},
           {"max_depth", given(options.max_depth)},
