@@ -113,8 +113,8 @@ class Wave {
 /// (Veach and Guibas 1995). Immutable, keeps references; any number of threads may trace at once.
 ///
 /// Many paths go from surface to surface in step, so that their rays are cast in packets, their random numbers are made
-/// side by side, and no path's arithmetic waits for a ray: an eighth more rays per second on the Cornell box with an area
-/// light, one thread, than one path after the other.
+/// side by side, and no path's arithmetic waits for a ray: an eighth more rays per second on the Cornell box with an
+/// area light, one thread, than one path after the other.
 class Integrator {
  public:
   /// @param bounces number of bounces whose light is kept apart, see Wave::bounces
