@@ -57,7 +57,7 @@ ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, 
   result.voxels_occupied = surfaces.size();
   Shading shading = timed(seconds.shade, [&] {
     Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, progress);
-    for (glm::vec3& radiance : lit.radiance) radiance = stored<Texel>(radiance);
+    for (glm::vec3& radiance : lit.radiance) radiance = result.clamped_shade.store<Texel>(radiance);
     return lit;
   });
   BasicPyramid<Texel> pyramid =
@@ -77,6 +77,7 @@ ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, 
     });
     result.bounces = bounced.bounces;
     result.gain = bounced.gain;
+    result.clamped_bounce = bounced.clamped;
     pyramid = std::move(bounced.pyramid);
     if (folder) {
       folder->write_radiance(surfaces, bounced.radiance, true);
@@ -106,12 +107,9 @@ ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, 
 ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
                            const ConeTraceOutputs& outputs, const Progress& progress) {
   validate(settings);
-  switch (settings.storage) {
-    case Storage::unorm8:
-      return run<Rgba8>(scene, caster, view, settings, outputs, progress);
-    default:
-      return run<glm::vec4>(scene, caster, view, settings, outputs, progress);
-  }
+  return with_texel(settings.storage, [&]<class Texel>(std::type_identity<Texel>) {
+    return run<Texel>(scene, caster, view, settings, outputs, progress);
+  });
 }
 
 }  // namespace voxref

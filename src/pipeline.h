@@ -21,6 +21,7 @@ struct ConeTraceResult {
   size_t voxels_occupied = 0;
   int bounces = 0;
   double gain = 0.0;
+  Clamping clamped_shade, clamped_bounce;  ///< radiance that `storage` could not hold: direct, and after the bounces
   StageSeconds seconds;
   std::map<std::string, size_t>
       bytes;  ///< per volume: surfaces, radiance, visibility, base, levels; `total` is the most held at once

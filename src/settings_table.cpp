@@ -169,7 +169,8 @@ std::vector<Parameter> grid_and_voxel_parameters() {
           "voxelize.static_wins", "dynamic surfaces never overwrite static voxels",
           [](auto& s) -> auto& { return s.voxelize.static_wins; }),
       choice(
-          "storage", {"float32", "unorm8"}, "number format of the volumes", [](auto& s) -> auto& { return s.storage; }),
+          "storage", {storage_names.begin(), storage_names.end()},
+          "number format of the volumes of radiance and opacity", [](auto& s) -> auto& { return s.storage; }),
       choice(
           "light.falloff", {"inverse_square", "attenuated"}, "of point and spot lights",
           [](auto& s) -> auto& { return s.light.falloff; }),

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <tuple>
 
 #include "catch.h"
 #include "make_scenes/builders.h"
@@ -80,6 +81,52 @@ TEST_CASE("Volumes written hold the pyramid before and after the bounces", "[pip
   for (const char* channel : {"R", "diffuse.G", "direct.B"})
     for (size_t i = 0; i < again.image.pixel_count(); ++i)
       CHECK(again.image.channel(channel)[i] == Approx(with.image.image.channel(channel)[i]).epsilon(1e-5).margin(1e-7));
+}
+
+TEST_CASE("Every storage makes nearly the same image, and writes and reads its own volumes", "[pipeline]") {
+  Scene scene = cornell_box(CornellLight::point);
+  scene.lights[0].intensity *= 0.1f;  // so that bytes can hold it
+  const Caster caster(scene);
+  const ConeTraceResult floats = cone_trace(scene, caster, view_of(scene, 16), at(32));
+  for (const auto& [storage, name, bound] :
+       {std::tuple(Storage::float16, "float16", 0.002), {Storage::unorm8, "unorm8", 0.05}}) {
+    const TemporaryFolder folder;
+    Settings settings = at(32);
+    settings.storage = storage;
+    const ConeTraceResult result = cone_trace(scene, caster, view_of(scene, 16), settings, {folder.path});
+    CAPTURE(name);
+    // Half floats have eleven bits; of the steps of bytes the mean indirect light is some five.
+    CHECK(mean_luminance(result.image.image, "diffuse") ==
+          Approx(mean_luminance(floats.image.image, "diffuse")).epsilon(bound));
+    CHECK(result.clamped_shade.voxels == 0);
+    CHECK(read_volume_index(folder.path).format == name);
+    CHECK(read_volume_index(folder.path).find("aniso_bounce_neg_x_0")->premultiplied);
+    const LitVolume volume = with_texel(storage, [&]<class Texel>(std::type_identity<Texel>) -> LitVolume {
+      return make_medium(VolumeFolder(folder.path).pyramid<Texel>(true));
+    });
+    const ConeImage again =
+        render_cones({scene, caster, volume, scene.bounds(), {}}, view_of(scene, 16), RenderOptions{});
+    size_t different = 0;
+    for (size_t i = 0; i < again.image.pixel_count(); ++i)
+      different += again.image.channel("R")[i] != result.image.image.channel("R")[i];
+    CHECK(different == 0);
+  }
+}
+
+TEST_CASE("Radiance that a storage cannot hold is clamped and counted", "[pipeline]") {
+  Scene scene = cornell_box(CornellLight::point);
+  scene.lights[0].intensity *= 1e6f;
+  const Caster caster(scene);
+  Settings settings = at(16);
+  CHECK(cone_trace(scene, caster, view_of(scene, 4), settings).clamped_shade.voxels == 0);
+  for (const Storage storage : {Storage::float16, Storage::unorm8}) {
+    settings.storage = storage;
+    const ConeTraceResult result = cone_trace(scene, caster, view_of(scene, 4), settings);
+    CHECK(result.clamped_shade.voxels > 0);
+    CHECK(result.clamped_shade.brightest > 65504.0f);
+    CHECK(result.clamped_bounce.voxels > result.clamped_shade.voxels / 2);
+    CHECK(result.image.nonfinite == 0);
+  }
 }
 
 TEST_CASE("Without bounces there is no bounced volume", "[pipeline]") {

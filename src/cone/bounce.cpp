@@ -80,6 +80,7 @@ class RawGather {
 struct Sums {
   double total = 0.0;   ///< luminance of the new radiance over all voxels
   double change = 0.0;  ///< of what it has more than the old one
+  Clamping clamped;
 };
 
 /// How far the bounces are, as one fraction. Each bounce takes an equal share of what is left by the estimate of its
@@ -119,7 +120,7 @@ Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direc
     Sums& sums = partial[begin / grain];
     for (size_t i = begin; i < end; ++i) {
       const glm::vec3 old = radiance[i];
-      radiance[i] = stored<Texel>(direct[i] + gather.reflected(i));
+      radiance[i] = sums.clamped.store<Texel>(direct[i] + gather.reflected(i));
       sums.total += luminance(radiance[i]);
       sums.change += double(luminance(radiance[i])) - luminance(old);
     }
@@ -129,6 +130,7 @@ Sums gather_bounce(const SurfaceGrid& surfaces, std::span<const glm::vec3> direc
   for (const Sums& p : partial) {
     sums.total += p.total;
     sums.change += p.change;
+    sums.clamped += p.clamped;
   }
   return sums;
 }
@@ -170,6 +172,7 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
     so_far.begin(left);
     const Sums sums = gather(so_far);
     result.pyramid = mipmap<Texel>(surfaces, result.radiance, mipmap_options, silent);
+    result.clamped = sums.clamped;
     ++result.bounces;
 
     if (previous > 0.0) result.gain = sums.change / previous;
@@ -189,6 +192,9 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
 
 template BounceResult bounce(const SurfaceGrid&, std::span<const glm::vec3>, Pyramid&&, const BounceOptions&,
                              const ConeOptions&, const MipmapOptions&, const glm::vec3&, const Progress&);
+template BasicBounceResult<Rgba16f> bounce(const SurfaceGrid&, std::span<const glm::vec3>, Pyramid16&&,
+                                           const BounceOptions&, const ConeOptions&, const MipmapOptions&,
+                                           const glm::vec3&, const Progress&);
 template BasicBounceResult<Rgba8> bounce(const SurfaceGrid&, std::span<const glm::vec3>, Pyramid8&&,
                                          const BounceOptions&, const ConeOptions&, const MipmapOptions&,
                                          const glm::vec3&, const Progress&);

@@ -20,6 +20,7 @@ struct BasicBounceResult {
   std::vector<glm::vec3> radiance;  ///< per occupied voxel, W/(sr m^2), after the last bounce
   BasicPyramid<Texel> pyramid;      ///< filtered from it
   int bounces = 0;                  ///< how many were made
+  Clamping clamped;                 ///< by the last bounce
   double gain = 0.0;                ///< last addition over the one before (loop gain); 0 with fewer than two bounces
 };
 using BounceResult = BasicBounceResult<glm::vec4>;

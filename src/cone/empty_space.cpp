@@ -47,6 +47,7 @@ float EmptySpace::reach(const glm::vec3& p, const glm::vec3& way) const {
 }
 
 template EmptySpace::EmptySpace(const BrickVolume<glm::vec4>&);
+template EmptySpace::EmptySpace(const BrickVolume<Rgba16f>&);
 template EmptySpace::EmptySpace(const BrickVolume<Rgba8>&);
 
 }  // namespace voxref

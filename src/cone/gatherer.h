@@ -7,7 +7,7 @@
 namespace voxref {
 
 /// Filtered light and opacity, in the form that `cone.opacity` and `storage` ask for.
-using LitVolume = std::variant<Medium, Pyramid, Pyramid8>;
+using LitVolume = std::variant<Medium, Pyramid, Pyramid16, Pyramid8>;
 
 /// Takes the pyramid's memory over.
 template <class Texel>
@@ -45,7 +45,7 @@ class Gatherer {
   float visibility(const GatherPoint& point, const Light& light, const Illumination& lit) const;
 
  private:
-  std::variant<ExtinctionGatherer, RawGatherer<glm::vec4>, RawGatherer<Rgba8>> gatherer_;
+  std::variant<ExtinctionGatherer, RawGatherer<glm::vec4>, RawGatherer<Rgba16f>, RawGatherer<Rgba8>> gatherer_;
 };
 
 }  // namespace voxref

@@ -52,21 +52,30 @@ BrickVolume<To> converted(const BrickVolume<From>& from, Decode&& decode_texel) 
   return to;
 }
 
-}  // namespace
-
-Medium make_medium(Pyramid8&& pyramid, MipmapFilter filter) {
-  const auto decoded = [](const Rgba8& texel) { return to_vec4(decode(texel)); };
+/// The same pyramid in floats; the other's memory is freed level by level.
+template <class Texel>
+Pyramid in_floats(BasicPyramid<Texel>&& pyramid) {
+  const auto decoded = [](const Texel& texel) { return to_vec4(decode(texel)); };
   Pyramid floats{pyramid.grid, converted<glm::vec4>(pyramid.base, decoded), {}};
   pyramid.base = {};
-  for (BrickVolume<Directional<Rgba8>>& level : pyramid.levels) {
-    floats.levels.push_back(converted<DirectionalTexel>(level, [&](const Directional<Rgba8>& texel) {
+  for (BrickVolume<Directional<Texel>>& level : pyramid.levels) {
+    floats.levels.push_back(converted<DirectionalTexel>(level, [&](const Directional<Texel>& texel) {
       DirectionalTexel faces;
       for (size_t face = 0; face < faces.size(); ++face) faces[face] = decoded(texel[face]);
       return faces;
     }));
     level = {};
   }
-  return make_medium(std::move(floats), filter);
+  return floats;
+}
+
+}  // namespace
+
+Medium make_medium(Pyramid16&& pyramid, MipmapFilter filter) {
+  return make_medium(in_floats(std::move(pyramid)), filter);
+}
+Medium make_medium(Pyramid8&& pyramid, MipmapFilter filter) {
+  return make_medium(in_floats(std::move(pyramid)), filter);
 }
 
 Medium make_medium(Pyramid&& pyramid, MipmapFilter filter) {

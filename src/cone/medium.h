@@ -25,7 +25,8 @@ struct Medium {
 /// Converts in place; the pyramid's memory is taken over. @param filter of the pyramid; an isotropic one keeps its
 /// leaks
 Medium make_medium(Pyramid&& pyramid, MipmapFilter filter = MipmapFilter::anisotropic);
-/// The same of what the bytes hold.
+/// The same of what the half floats and bytes hold.
+Medium make_medium(Pyramid16&& pyramid, MipmapFilter filter = MipmapFilter::anisotropic);
 Medium make_medium(Pyramid8&& pyramid, MipmapFilter filter = MipmapFilter::anisotropic);
 
 /// The finest level alone, without radiance, for marching shadows before anything is lit.

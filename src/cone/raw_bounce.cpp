@@ -66,6 +66,7 @@ glm::vec3 RawVoxelGatherer<Texel>::march(const glm::vec3& apex, const glm::vec3&
 }
 
 template class RawVoxelGatherer<glm::vec4>;
+template class RawVoxelGatherer<Rgba16f>;
 template class RawVoxelGatherer<Rgba8>;
 
 }  // namespace voxref

@@ -79,6 +79,7 @@ float RawGatherer<Texel>::visibility(const GatherPoint& point, const Light& ligh
 }
 
 template class RawGatherer<glm::vec4>;
+template class RawGatherer<Rgba16f>;
 template class RawGatherer<Rgba8>;
 
 }  // namespace voxref

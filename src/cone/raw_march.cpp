@@ -81,9 +81,13 @@ float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const EmptySpace& emp
 
 template RawCone march_raw(const BasicPyramid<glm::vec4>&, const glm::vec3&, const glm::vec3&,
                            const std::vector<ConeStep>&);
+template RawCone march_raw(const BasicPyramid<Rgba16f>&, const glm::vec3&, const glm::vec3&,
+                           const std::vector<ConeStep>&);
 template RawCone march_raw(const BasicPyramid<Rgba8>&, const glm::vec3&, const glm::vec3&,
                            const std::vector<ConeStep>&);
 template float march_raw_shadow(const BasicPyramid<glm::vec4>&, const EmptySpace&, const glm::vec3&, const glm::vec3&,
+                                const std::vector<ConeStep>&, float, float);
+template float march_raw_shadow(const BasicPyramid<Rgba16f>&, const EmptySpace&, const glm::vec3&, const glm::vec3&,
                                 const std::vector<ConeStep>&, float, float);
 template float march_raw_shadow(const BasicPyramid<Rgba8>&, const EmptySpace&, const glm::vec3&, const glm::vec3&,
                                 const std::vector<ConeStep>&, float, float);

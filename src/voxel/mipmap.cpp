@@ -178,10 +178,13 @@ BasicPyramid<Texel> mipmap(const Grid& grid, BrickVolume<Texel> base, const Mipm
 }
 
 template struct BasicPyramid<glm::vec4>;
+template struct BasicPyramid<Rgba16f>;
 template struct BasicPyramid<Rgba8>;
 template Pyramid mipmap(const SurfaceGrid&, std::span<const glm::vec3>, const MipmapOptions&, const Progress&);
+template Pyramid16 mipmap(const SurfaceGrid&, std::span<const glm::vec3>, const MipmapOptions&, const Progress&);
 template Pyramid8 mipmap(const SurfaceGrid&, std::span<const glm::vec3>, const MipmapOptions&, const Progress&);
 template Pyramid mipmap(const Grid&, BrickVolume<glm::vec4>, const MipmapOptions&, const Progress&);
+template Pyramid16 mipmap(const Grid&, BrickVolume<Rgba16f>, const MipmapOptions&, const Progress&);
 template Pyramid8 mipmap(const Grid&, BrickVolume<Rgba8>, const MipmapOptions&, const Progress&);
 
 }  // namespace voxref

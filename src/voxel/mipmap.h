@@ -31,7 +31,8 @@ struct MipmapOptions {
 /// Premultiplied radiance (rgb) and opacity (a), six faces.
 using DirectionalTexel = Directional<glm::vec4>;
 
-/// Radiance and opacity of a grid at all scales, held in texels of one storage: glm::vec4 or Rgba8. Level k of `levels`
+/// Radiance and opacity of a grid at all scales, held in texels of one storage: glm::vec4, Rgba16f or
+/// Rgba8. Level k of `levels`
 /// has texels of 2^(k+1) voxels a side and ceil(size / 2^(k+1)) of them, anchored at the grid's minimum corner (what
 /// sticks out is empty), down to 1x1x1.
 template <class Texel>
@@ -43,6 +44,7 @@ struct BasicPyramid {
   size_t bytes() const;
 };
 using Pyramid = BasicPyramid<glm::vec4>;
+using Pyramid16 = BasicPyramid<Rgba16f>;
 using Pyramid8 = BasicPyramid<Rgba8>;
 
 /// Spec section 4. For each of the four columns of a 2x2x2 block along the face's axis front + back (1 - alpha_front),

@@ -1,6 +1,7 @@
 #include "voxel/npy.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -10,6 +11,7 @@
 
 #include "error.h"
 #include "file.h"
+#include "voxel/texel.h"
 
 namespace voxref {
 
@@ -22,18 +24,56 @@ constexpr size_t alignment = 64;            // of the first value, as NumPy writ
 constexpr size_t longest_header = 1 << 16;  // of a plain array's header; beyond it the length itself is damaged
 constexpr size_t most_dimensions = 8;
 
-size_t bytes_of(NpyType type) { return type == NpyType::float32 ? 4 : 1; }
+/// How a type is called in volumes.json, in a header's dictionary, and how large a value is.
+struct TypeNames {
+  NpyType type;
+  std::string_view name, descr;
+  size_t bytes;
+};
+constexpr std::array<TypeNames, 3> types = {{{NpyType::float32, "float32", "'<f4'", 4},
+                                             {NpyType::float16, "float16", "'<f2'", 2},
+                                             {NpyType::uint8, "uint8", "'|u1'", 1}}};
+const TypeNames& names_of(NpyType type) { return types[size_t(type)]; }
+size_t bytes_of(NpyType type) { return names_of(type).bytes; }
 
 size_t product(std::span<const size_t> sizes) {
   return std::accumulate(sizes.begin(), sizes.end(), size_t{1}, std::multiplies<>());
 }
 
-/// The byte that holds `value` in [0,1]; what lies outside is clamped, NaN is 0. Ties round to even, as in encode().
-uint8_t to_byte(float value) { return uint8_t(std::nearbyint(255.0f * std::min(1.0f, std::max(0.0f, value)))); }
+/// Values go to files and come back four at a time, as a texel's channels do; the last ones are padded with zero.
+template <class Texel>
+std::string encoded(std::span<const float> values) {
+  constexpr size_t size = sizeof(Texel) / 4;
+  std::string bytes(values.size() * size, '\0');
+  for (size_t i = 0; i < values.size(); i += 4) {
+    Float4 four{};
+    const size_t count = std::min<size_t>(4, values.size() - i);
+    std::memcpy(&four, &values[i], count * sizeof(float));
+    const Texel texel = encode<Texel>(four);
+    std::memcpy(&bytes[i * size], &texel, count * size);
+  }
+  return bytes;
+}
+template <class Texel>
+void decode_all(std::string_view bytes, std::span<float> values) {
+  constexpr size_t size = sizeof(Texel) / 4;
+  for (size_t i = 0; i < values.size(); i += 4) {
+    Texel texel{};
+    const size_t count = std::min<size_t>(4, values.size() - i);
+    std::memcpy(&texel, &bytes[i * size], count * size);
+    const Float4 four = decode(texel);
+    std::memcpy(&values[i], &four, count * sizeof(float));
+  }
+}
+/// Calls visit(std::type_identity<Texel>{}) with the texel whose channels have the type.
+template <class Visit>
+decltype(auto) with_channels(NpyType type, Visit&& visit) {
+  constexpr std::array<Storage, 3> storage = {Storage::float32, Storage::float16, Storage::unorm8};
+  return with_texel(storage[size_t(type)], visit);
+}
 
 std::string header_of(NpyType type, std::span<const size_t> shape) {
-  std::string dictionary = type == NpyType::float32 ? "{'descr': '<f4'" : "{'descr': '|u1'";
-  dictionary += ", 'fortran_order': False, 'shape': (";
+  std::string dictionary = "{'descr': " + std::string(names_of(type).descr) + ", 'fortran_order': False, 'shape': (";
   for (const size_t side : shape) dictionary += std::to_string(side) + ",";
   dictionary += "), }";
   const size_t prefix = magic.size() + 2 + 2;  // version and length
@@ -85,7 +125,13 @@ std::string place_of(std::span<const size_t> shape, size_t i, size_t offset) {
 
 }  // namespace
 
-std::string_view dtype_name(NpyType type) { return type == NpyType::float32 ? "float32" : "uint8"; }
+std::string_view dtype_name(NpyType type) { return names_of(type).name; }
+
+std::optional<NpyType> dtype_called(std::string_view name) {
+  for (const TypeNames& type : types)
+    if (type.name == name) return type.type;
+  return std::nullopt;
+}
 
 void write_npy(const std::filesystem::path& file, NpyType type, std::span<const size_t> shape,
                const std::function<void(size_t, std::span<float>)>& fill) {
@@ -94,13 +140,12 @@ void write_npy(const std::filesystem::path& file, NpyType type, std::span<const 
     const std::string header = header_of(type, shape);
     stream.write(header.data(), std::streamsize(header.size()));
     std::vector<float> slice(product(shape.subspan(1)));
-    std::vector<uint8_t> bytes(type == NpyType::uint8 ? slice.size() : 0);
     for (size_t i = 0; i < shape[0] && stream; ++i) {
       std::fill(slice.begin(), slice.end(), 0.0f);
       fill(i, slice);
-      std::transform(slice.begin(), slice.begin() + std::ptrdiff_t(bytes.size()), bytes.begin(), to_byte);
-      const void* values = bytes.empty() ? static_cast<const void*>(slice.data()) : bytes.data();
-      stream.write(static_cast<const char*>(values), std::streamsize(slice.size() * bytes_of(type)));
+      const std::string bytes =
+          with_channels(type, [&]<class Texel>(std::type_identity<Texel>) { return encoded<Texel>(slice); });
+      stream.write(bytes.data(), std::streamsize(bytes.size()));
     }
     stream.close();
     if (!stream) throw Error(file.string(), std::string("cannot be written: ") + std::strerror(errno));
@@ -131,12 +176,11 @@ size_t NpyReader::read_header() {
 
   const std::string_view type = value_of(dictionary, "descr", name);
   const std::string descr(type.substr(0, type.find(',')));
-  if (descr == "'<f4'")
-    type_ = NpyType::float32;
-  else if (descr == "'|u1'" || descr == "'<u1'")
-    type_ = NpyType::uint8;
-  else
-    throw Error(name, "header", "type " + descr + " is neither float32 ('<f4') nor uint8 ('|u1')");
+  const auto known = std::ranges::find_if(
+      types, [&](const TypeNames& t) { return t.descr == descr || (t.type == NpyType::uint8 && descr == "'<u1'"); });
+  if (known == types.end())
+    throw Error(name, "header", "type " + descr + " is not float32 ('<f4'), float16 ('<f2') or uint8 ('|u1')");
+  type_ = known->type;
   if (!value_of(dictionary, "fortran_order", name).starts_with("False"))
     throw Error(name, "header", "is in Fortran order; save it in C order");
   shape_ = parse_shape(value_of(dictionary, "shape", name), name);
@@ -162,15 +206,10 @@ void NpyReader::check_length(size_t offset) {
 void NpyReader::read_slice(size_t i, std::span<float> slice) {
   const size_t bytes = slice_size_ * bytes_of(type_);
   stream_.seekg(std::streamoff(offset_ + i * bytes));
-  if (type_ == NpyType::float32) {
-    stream_.read(reinterpret_cast<char*>(slice.data()), std::streamsize(bytes));
-  } else {
-    std::vector<uint8_t> encoded(slice_size_);
-    stream_.read(reinterpret_cast<char*>(encoded.data()), std::streamsize(bytes));
-    // A multiplication, as spec section 4 has it: division would differ in the last bit.
-    std::transform(encoded.begin(), encoded.end(), slice.begin(), [](uint8_t b) { return float(b) * (1.0f / 255.0f); });
-  }
+  std::string encoded(bytes, '\0');
+  stream_.read(encoded.data(), std::streamsize(bytes));
   if (!stream_) throw Error(file_.string(), std::string("cannot be read: ") + std::strerror(errno));
+  with_channels(type_, [&]<class Texel>(std::type_identity<Texel>) { decode_all<Texel>(encoded, slice); });
   const auto bad = std::find_if_not(slice.begin(), slice.end(), [](float v) { return std::isfinite(v); });
   if (bad != slice.end())
     throw Error(file_.string(), place_of(shape_, i, size_t(bad - slice.begin())), "is not finite");

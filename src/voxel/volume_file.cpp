@@ -181,8 +181,10 @@ BasicPyramid<Texel> VolumeFolder::pyramid(bool bounced) const {
 }
 
 template BrickVolume<glm::vec4> VolumeFolder::base(bool) const;
+template BrickVolume<Rgba16f> VolumeFolder::base(bool) const;
 template BrickVolume<Rgba8> VolumeFolder::base(bool) const;
 template Pyramid VolumeFolder::pyramid(bool) const;
+template Pyramid16 VolumeFolder::pyramid(bool) const;
 template Pyramid8 VolumeFolder::pyramid(bool) const;
 
 }  // namespace voxref

@@ -13,8 +13,8 @@
 
 namespace voxref {
 
-/// Reads a folder of volumes (see VolumeFolderWriter), whoever wrote it, float32 or uint8 (read as value / 255). Every
-/// read checks shape, type and finiteness. @throws Error with the file and what is wrong
+/// Reads a folder of volumes (see VolumeFolderWriter), whoever wrote it, float32, float16 or uint8 (read as value /
+/// 255). Every read checks shape, type and finiteness. @throws Error with the file and what is wrong
 class VolumeFolder {
  public:
   explicit VolumeFolder(std::filesystem::path folder);

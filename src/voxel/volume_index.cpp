@@ -84,8 +84,9 @@ VolumeEntry read_entry(const Members& members) {
     if (entry.shape[d] < 1 || entry.shape[d] > largest_side) members.fail("shape", "has a side out of range");
   if (entry.shape[3] < 1 || entry.shape[3] > most_channels) members.fail("shape", "has a channel count out of range");
   const auto dtype = members.get<std::string>("dtype");
-  if (dtype != "float32" && dtype != "uint8") members.fail("dtype", "'" + dtype + "' is neither float32 nor uint8");
-  entry.type = dtype == "uint8" ? NpyType::uint8 : NpyType::float32;
+  const std::optional<NpyType> type = dtype_called(dtype);
+  if (!type) members.fail("dtype", "'" + dtype + "' is not float32, float16 or uint8");
+  entry.type = *type;
   entry.stage = members.get<std::string>("stage", "");
   entry.face = members.get<std::string>("face", "");
   entry.level = members.get<int>("level", -1);

@@ -25,7 +25,7 @@ struct VolumeEntry {
 /// A folder of volumes: cli.md, "Volumes".
 struct VolumeIndex {
   Grid grid;
-  std::string format = "float32";  ///< or unorm8: how the renderer that made the volumes holds them
+  std::string format = "float32";  ///< float16, unorm8: how the renderer that made the volumes holds them
   std::vector<VolumeEntry> volumes;
 
   const VolumeEntry* find(const std::string& name) const;  ///< null when there is none

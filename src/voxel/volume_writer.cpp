@@ -25,7 +25,7 @@ constexpr const char* counted = "count of averaged fragments, modulo 256";
 }  // namespace
 
 VolumeFolderWriter::VolumeFolderWriter(std::filesystem::path folder, const Grid& grid, Storage storage)
-    : folder_(std::move(folder)) {
+    : folder_(std::move(folder)), storage_(storage) {
   std::error_code error;
   for (std::filesystem::path missing = folder_; !missing.empty() && !std::filesystem::exists(missing, error);
        missing = missing.parent_path())
@@ -36,7 +36,7 @@ VolumeFolderWriter::VolumeFolderWriter(std::filesystem::path folder, const Grid&
     throw Error(folder_.string(), "cannot be made: " + error.message());
   }
   index_.grid = grid;
-  index_.format = storage == Storage::unorm8 ? "unorm8" : "float32";
+  index_.format = storage_names[size_t(storage)];
 }
 
 VolumeFolderWriter::~VolumeFolderWriter() {
@@ -57,10 +57,18 @@ VolumeEntry VolumeFolderWriter::entry(const std::string& name, const glm::ivec3&
   VolumeEntry entry;
   entry.name = name;
   entry.shape = {size_t(size.z), size_t(size.y), size_t(size.x), channels};
-  entry.type = in_bytes() ? NpyType::uint8 : NpyType::float32;
+  entry.type = storage_ == Storage::unorm8 ? NpyType::uint8 : NpyType::float32;
   entry.stage = stage;
   if (channels == 4) entry.alpha = "opacity";
   return entry;
+}
+
+VolumeEntry VolumeFolderWriter::light_entry(const std::string& name, const glm::ivec3& size,
+                                            const std::string& stage) const {
+  VolumeEntry volume = entry(name, size, 4, stage);
+  if (storage_ == Storage::float16) volume.type = NpyType::float16;
+  volume.premultiplied = true;
+  return volume;
 }
 
 void VolumeFolderWriter::write(const VolumeEntry& entry,
@@ -98,7 +106,7 @@ void VolumeFolderWriter::write_surfaces(const SurfaceGrid& surfaces) {
   };
   write_sparse(attribute("albedo", 4), surfaces,
                [&](size_t i, float* channels) { store(glm::vec4(glm::vec3(surfaces.albedo[i]), alpha(i)), channels); });
-  if (!in_bytes()) {
+  if (storage_ != Storage::unorm8) {
     const auto write_vectors = [&](const std::string& name, const std::vector<glm::vec3>& values) {
       write_sparse(attribute(name, 3), surfaces, [&](size_t i, float* channels) { store(values[i], channels); });
     };
@@ -127,8 +135,7 @@ void VolumeFolderWriter::write_visibility(const SurfaceGrid& surfaces, std::span
 
 void VolumeFolderWriter::write_radiance(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance,
                                         bool bounced) {
-  VolumeEntry volume = entry(radiance_name(bounced), index_.grid.size, 4, bounced ? "bounce" : "shade");
-  volume.premultiplied = true;
+  const VolumeEntry volume = light_entry(radiance_name(bounced), index_.grid.size, bounced ? "bounce" : "shade");
   write_sparse(volume, surfaces, [&](size_t i, float* channels) {
     const float opacity = surfaces.albedo[i].a;
     store(glm::vec4(opacity * radiance[i], opacity), channels);
@@ -137,8 +144,7 @@ void VolumeFolderWriter::write_radiance(const SurfaceGrid& surfaces, std::span<c
 
 template <class Texel>
 void VolumeFolderWriter::write_base(const BrickVolume<Texel>& base, bool bounced) {
-  VolumeEntry volume = entry(radiance_name(bounced), base.size(), 4, bounced ? "bounce" : "shade");
-  volume.premultiplied = true;
+  const VolumeEntry volume = light_entry(radiance_name(bounced), base.size(), bounced ? "bounce" : "shade");
   write(volume, [&](size_t z, std::span<float> slice) {
     fill_slice(base, int(z), slice, [](const Texel& texel) { return texel; });
   });
@@ -150,10 +156,9 @@ void VolumeFolderWriter::write_levels(const BasicPyramid<Texel>& pyramid, bool b
     for (size_t level = 0; level < pyramid.levels.size(); ++level) {
       const BrickVolume<Directional<Texel>>& texels = pyramid.levels[level];
       VolumeEntry volume =
-          entry(aniso_name(face, level, bounced), texels.size(), 4, bounced ? "mipmap after bounce" : "mipmap");
+          light_entry(aniso_name(face, level, bounced), texels.size(), bounced ? "mipmap after bounce" : "mipmap");
       volume.face = face_names[face];
       volume.level = int(level);
-      volume.premultiplied = true;
       write(volume, [&](size_t z, std::span<float> slice) {
         fill_slice(texels, int(z), slice, [&](const Directional<Texel>& texel) { return texel[face]; });
       });
@@ -161,8 +166,10 @@ void VolumeFolderWriter::write_levels(const BasicPyramid<Texel>& pyramid, bool b
 }
 
 template void VolumeFolderWriter::write_base(const BrickVolume<glm::vec4>&, bool);
+template void VolumeFolderWriter::write_base(const BrickVolume<Rgba16f>&, bool);
 template void VolumeFolderWriter::write_base(const BrickVolume<Rgba8>&, bool);
 template void VolumeFolderWriter::write_levels(const Pyramid&, bool);
+template void VolumeFolderWriter::write_levels(const Pyramid16&, bool);
 template void VolumeFolderWriter::write_levels(const Pyramid8&, bool);
 
 void VolumeFolderWriter::finish() {

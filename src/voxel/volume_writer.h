@@ -15,7 +15,8 @@ namespace voxref {
 /// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), dense (cli.md,
 /// "Volumes"): albedo (a = opacity), normal, emission, visibility, radiance, radiance_bounce, aniso_<face>_<level>,
 /// aniso_bounce_<face>_<level>. Radiance and aniso volumes are premultiplied. In float32 there is centroid (world) too,
-/// and emission only where the scene has it. In unorm8 volumes are uint8, normals as 0.5 n + 0.5, and static_flag is
+/// and emission only where the scene has it. In float16 those of radiance and opacity are
+/// float16. In unorm8 volumes are uint8, normals as 0.5 n + 0.5, and static_flag is
 /// there; of voxels that count their fragments, albedo, normal and emission have the count as alpha. Files appear whole
 /// or not at all, and all of them or none; volumes.json goes away with the first volume that is written and comes back
 /// last, so that it never describes a mixture. Volumes pass through memory a slice at a time.
@@ -46,11 +47,14 @@ class VolumeFolderWriter {
   void write_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces,
                     const std::function<void(size_t i, float* channels)>& put);
   void remove_made_folders() const;
-  bool in_bytes() const { return index_.format == "unorm8"; }
   std::filesystem::path file(const VolumeEntry& entry) const { return folder_ / (entry.name + ".npy"); }
+  /// Of a volume of attributes, which only unorm8 does not hold in float32.
   VolumeEntry entry(const std::string& name, const glm::ivec3& size, size_t channels, const std::string& stage) const;
+  /// Of a volume of radiance and opacity, premultiplied.
+  VolumeEntry light_entry(const std::string& name, const glm::ivec3& size, const std::string& stage) const;
 
   std::filesystem::path folder_;
+  Storage storage_;
   std::vector<std::filesystem::path> made_;  // folders that were not there, the innermost first
   VolumeIndex index_;
   bool finished_ = false;

@@ -98,6 +98,27 @@ TEST_CASE("bytes read as byte times 1/255", "[npy]") {
   CHECK(slice == std::vector<float>{0.0f, 127.0f * (1.0f / 255.0f), 1.0f});
 }
 
+TEST_CASE("half floats are written as '<f2', rounded, and read back; too large a value is clamped", "[npy]") {
+  const TemporaryFolder folder;
+  const std::vector<size_t> shape = {2, 3};  // not in fours
+  const std::vector<float> values = {1.0f, 0.1f, -2.0f, 1e9f, 0.0f, 0x1p-24f};
+  write_npy(folder.path / "a.npy", NpyType::float16, shape,
+            [&](size_t i, std::span<float> slice) { std::copy_n(values.begin() + 3 * long(i), 3, slice.begin()); });
+  const std::string content = read_file(folder.path / "a.npy");
+  CHECK(contains(content, "'descr': '<f2'"));
+  CHECK(content.ends_with(std::string("\x00\x3c\x66\x2e\x00\xc0\xff\x7b\x00\x00\x01\x00", 12)));
+  NpyReader reader(folder.path / "a.npy");
+  CHECK(reader.type() == NpyType::float16);
+  std::vector<float> slice(3);
+  reader.read_slice(0, slice);
+  CHECK(slice == std::vector<float>{1.0f, 0x1.998p-4f, -2.0f});
+  reader.read_slice(1, slice);
+  CHECK(slice == std::vector<float>{65504.0f, 0.0f, 0x1p-24f});
+  const std::string infinite("\x00\x7c", 2);
+  CHECK(complaint(array_file("{'descr': '<f2', 'fortran_order': False, 'shape': (1,), }", infinite)) ==
+        "[0]: is not finite");
+}
+
 TEST_CASE("a damaged array file is refused with its name and the reason", "[npy]") {
   const std::string values(24, '\0');
   CHECK(complaint(array_file(float_dictionary, values)) == "read");

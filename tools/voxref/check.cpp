@@ -97,7 +97,7 @@ int run_check(const Options& options) {
   write_check(options.output, report);
 
   say(terminal, path);
-  say(terminal, cone);
+  say(terminal, cone, settings.storage);
   say_verdict(terminal, report);
   terminal.say("report    " + (std::filesystem::path(options.output) / "report.html").string());
   terminal.result(check_result(report));

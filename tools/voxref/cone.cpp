@@ -31,7 +31,7 @@ int run_cone(const ConeCommandOptions& options) {
   attach(result.image.image, origin);
   write_exr(options.output, result.image.image);
 
-  say(terminal, result);
+  say(terminal, result, settings.storage);
   terminal.say("written   " + options.output);
   if (options.outputs.volumes) terminal.say("volumes   " + options.outputs.volumes->string());
   terminal.result(to_json(result));

@@ -34,6 +34,7 @@ nlohmann::json to_json(const ConeTraceResult& result) {
           {"grid", {result.grid.size.x, result.grid.size.y, result.grid.size.z}},
           {"bounces", result.bounces},
           {"gain", result.gain},
+          {"clamped_voxels", {{"shade", result.clamped_shade.voxels}, {"bounce", result.clamped_bounce.voxels}}},
           {"nonfinite", result.image.nonfinite}};
 }
 

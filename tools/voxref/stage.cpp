@@ -40,12 +40,16 @@ Scene stage_scene(const Input& input) {
   return load_scene(input.options.scene, input.terminal);
 }
 
+template <class Texel>
 void run_shade(const Input& input) {
   const Scene scene = stage_scene(input);
   const Caster caster(scene);
   const SurfaceGrid surfaces = input.volumes.surfaces();
   const Settings& settings = input.settings;
-  const Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, input.terminal.progress());
+  Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, input.terminal.progress());
+  Clamping clamped;
+  for (glm::vec3& radiance : lit.radiance) radiance = clamped.store<Texel>(radiance);
+  warn(input.terminal, clamped, settings.storage, "shading");
   VolumeFolderWriter writer(input.output, surfaces.grid, settings.storage);
   writer.write_visibility(surfaces, lit.visibility);
   writer.write_radiance(surfaces, lit.radiance, false);
@@ -79,6 +83,7 @@ void run_bounce(const Input& input) {
   const BasicBounceResult<Texel> result =
       bounce(surfaces, direct, std::move(pyramid), settings.bounce, settings.render.cone, settings.mipmap,
              input.options.view.background, input.terminal.progress());
+  warn(input.terminal, result.clamped, settings.storage, "the last bounce");
   VolumeFolderWriter writer(input.output, surfaces.grid, settings.storage);
   writer.write_radiance(surfaces, result.radiance, true);
   writer.write_levels(result.pyramid, true);
@@ -119,11 +124,12 @@ int run_stage(const Options& options) {
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Input input{options, make_settings(options.settings), VolumeFolder(options.from), terminal, options.output};
-  const bool bytes = input.settings.storage == Storage::unorm8;
-  if (options.stage == "shade") run_shade(input);
-  if (options.stage == "mipmap") bytes ? run_mipmap<Rgba8>(input) : run_mipmap<glm::vec4>(input);
-  if (options.stage == "bounce") bytes ? run_bounce<Rgba8>(input) : run_bounce<glm::vec4>(input);
-  if (options.stage == "gather") bytes ? run_gather<Rgba8>(input) : run_gather<glm::vec4>(input);
+  with_texel(input.settings.storage, [&]<class Texel>(std::type_identity<Texel>) {
+    if (options.stage == "shade") run_shade<Texel>(input);
+    if (options.stage == "mipmap") run_mipmap<Texel>(input);
+    if (options.stage == "bounce") run_bounce<Texel>(input);
+    if (options.stage == "gather") run_gather<Texel>(input);
+  });
   terminal.say("written   " + options.output);
   terminal.result({{"stage", options.stage}, {"from", options.from}, {"output", options.output}});
   return exit_done;

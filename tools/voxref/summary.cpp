@@ -23,7 +23,16 @@ void say(Terminal& terminal, const PathResult& result) {
                               result.first_nonfinite));
 }
 
-void say(Terminal& terminal, const ConeTraceResult& result) {
+void warn(Terminal& terminal, const Clamping& clamped, Storage storage, const std::string& stage) {
+  if (clamped.voxels == 0) return;
+  const auto limit = [](const auto& texel) { return greatest<typename std::decay_t<decltype(texel)>::type>; };
+  terminal.warn(fmt::format(
+      "voxref: warning: storage {} holds radiance up to {}: after {} that of {} voxels was clamped, "
+      "the brightest {:.4g}",
+      storage_names[size_t(storage)], with_texel(storage, limit), stage, clamped.voxels, clamped.brightest));
+}
+
+void say(Terminal& terminal, const ConeTraceResult& result, Storage storage) {
   const StageSeconds& s = result.seconds;
   terminal.say(fmt::format("cone      {}x{}x{} grid, {} voxels occupied, {} bounces", result.grid.size.x,
                            result.grid.size.y, result.grid.size.z, result.voxels_occupied, result.bounces));
@@ -39,6 +48,8 @@ void say(Terminal& terminal, const ConeTraceResult& result) {
   if (result.image.nonfinite > 0)
     terminal.warn(fmt::format("voxref: warning: {} pixels are not finite, the first at {}", result.image.nonfinite,
                               result.image.first_nonfinite));
+  warn(terminal, result.clamped_shade, storage, "shading");
+  warn(terminal, result.clamped_bounce, storage, "the last bounce");
 }
 
 }  // namespace voxref

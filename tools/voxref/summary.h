@@ -7,7 +7,9 @@ namespace voxref {
 
 /// The result in a few aligned lines, on the terminal as it is configured.
 void say(Terminal& terminal, const PathResult& result);
-void say(Terminal& terminal, const ConeTraceResult& result);
+void say(Terminal& terminal, const ConeTraceResult& result, Storage storage);
+/// Says what a storage clamped, if anything. @param stage that made it
+void warn(Terminal& terminal, const Clamping& clamped, Storage storage, const std::string& stage);
 
 /// "1.5 GiB", "12.0 MiB", "340 bytes"
 std::string byte_count(size_t bytes);
