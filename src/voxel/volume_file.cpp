@@ -1,6 +1,7 @@
 #include "voxel/volume_file.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "error.h"
 
@@ -15,14 +16,21 @@ bool empty(std::span<const float> texel) {
 }
 glm::vec3 rgb(std::span<const float> texel) { return {texel[0], texel[1], texel[2]}; }
 
+/// Reads slice z, whose values must be finite: what NaN does further on would hide where it came from.
+void read_finite(ArrayFile& volume, size_t z, std::span<float> slice) {
+  volume.read_slice(z, slice);
+  const auto bad = std::ranges::find_if_not(slice, [](float v) { return std::isfinite(v); });
+  if (bad != slice.end()) throw Error(volume.name(), volume.place_of(z, size_t(bad - slice.begin())), "is not finite");
+}
+
 /// Calls visit(voxel, texel) for all texels of a volume, a slice in memory at a time.
 template <class Visit>
-void for_each_texel(NpyReader& reader, const VolumeEntry& entry, Visit&& visit) {
+void for_each_texel(ArrayFile& reader, const VolumeEntry& entry, Visit&& visit) {
   std::vector<float> slice(reader.slice_size());
   const size_t channels = entry.shape[3];
   const glm::ivec3 size = size_of(entry);
   for (int z = 0; z < size.z; ++z) {
-    reader.read_slice(size_t(z), slice);
+    read_finite(reader, size_t(z), slice);
     const float* texel = slice.data();
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x, texel += channels) visit(glm::ivec3(x, y, z), std::span(texel, channels));
@@ -44,6 +52,13 @@ glm::vec4 premultiplied(const VolumeEntry& entry, std::span<const float> texel) 
 
 }  // namespace
 
+ArrayFile open_volume(const std::filesystem::path& folder, const VolumeEntry& entry) {
+  ArrayFile volume(folder / entry.file, entry.mip, ArrayMeaning::volume);
+  if (volume.shape() != entry.shape) throw Error(volume.name(), "header", "shape is not the one in volumes.json");
+  if (volume.type() != entry.type) throw Error(volume.name(), "header", "type is not the one in volumes.json");
+  return volume;
+}
+
 VolumeFolder::VolumeFolder(std::filesystem::path folder)
     : folder_(std::move(folder)), index_(read_volume_index(folder_)) {}
 
@@ -53,25 +68,21 @@ const VolumeEntry& VolumeFolder::entry(const std::string& name) const {
   return *found;
 }
 
-std::string VolumeFolder::file(const VolumeEntry& entry) const { return (folder_ / (entry.name + ".npy")).string(); }
+std::string VolumeFolder::file(const VolumeEntry& entry) const { return (folder_ / entry.file).string(); }
 
-NpyReader VolumeFolder::open(const VolumeEntry& entry, const glm::ivec3& size, size_t least_channels) const {
+ArrayFile VolumeFolder::open(const VolumeEntry& entry, const glm::ivec3& size, size_t least_channels) const {
   if (size_of(entry) != size || entry.shape[3] < least_channels)
     throw Error(index_file(folder_).string(), entry.name, "has a shape that does not fit the grid and its level");
-  NpyReader reader(file(entry));
-  if (!std::ranges::equal(reader.shape(), entry.shape))
-    throw Error(file(entry), "header", "shape is not the one in volumes.json");
-  if (reader.type() != entry.type) throw Error(file(entry), "header", "type is not the one in volumes.json");
-  return reader;
+  return open_volume(folder_, entry);
 }
 
 void VolumeFolder::read_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces, size_t least_channels,
                                const std::function<void(size_t, std::span<const float>)>& get) const {
-  NpyReader reader = open(entry, surfaces.grid.size, least_channels);
+  ArrayFile reader = open(entry, surfaces.grid.size, least_channels);
   std::vector<float> slice(reader.slice_size());
   for (size_t i = 0, z = size_t(-1); i < surfaces.size(); ++i) {
     const glm::ivec3& v = surfaces.voxels[i];
-    if (size_t(v.z) != z) reader.read_slice(z = size_t(v.z), slice);
+    if (size_t(v.z) != z) read_finite(reader, z = size_t(v.z), slice);
     const size_t channels = entry.shape[3], texel = size_t(v.x) + entry.shape[2] * size_t(v.y);
     get(i, std::span(slice).subspan(texel * channels, channels));
   }
@@ -82,7 +93,7 @@ SurfaceGrid VolumeFolder::surfaces() const {
   surfaces.grid = grid();
   const VolumeEntry& albedo = entry("albedo");
   const bool counts = albedo.alpha.starts_with("count");
-  NpyReader reader = open(albedo, grid().size, 4);
+  ArrayFile reader = open(albedo, grid().size, 4);
   for_each_texel(reader, albedo, [&](const glm::ivec3& voxel, std::span<const float> texel) {
     require_opacity(texel[3], file(albedo), voxel);
     if (texel[3] == 0.0f) return;
@@ -136,7 +147,7 @@ BrickVolume<Texel> VolumeFolder::base(bool bounced) const {
   const VolumeEntry& volume = entry(radiance_name(bounced));
   BrickVolume<Texel> base(grid().size);
   BrickSet bricks(base.brick_grid());
-  NpyReader reader = open(volume, base.size(), 4);
+  ArrayFile reader = open(volume, base.size(), 4);
   for_each_texel(reader, volume, [&](const glm::ivec3& voxel, std::span<const float> texel) {
     require_opacity(texel[3], file(volume), voxel);
     if (!empty(texel)) bricks.add(voxel / base.side);
@@ -155,7 +166,7 @@ BrickVolume<Directional<Texel>> VolumeFolder::level(size_t level, const glm::ive
   const auto visit_faces = [&](auto&& visit) {
     for (size_t face = 0; face < face_names.size(); ++face) {
       const VolumeEntry& volume = entry(aniso_name(face, level, bounced));
-      NpyReader reader = open(volume, size, 4);
+      ArrayFile reader = open(volume, size, 4);
       for_each_texel(reader, volume, [&](const glm::ivec3& voxel, std::span<const float> texel) {
         require_opacity(texel[3], file(volume), voxel);
         if (!empty(texel)) visit(face, voxel, premultiplied(volume, texel));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "voxel/array_file.h"
 #include "voxel/mipmap.h"
 #include "voxel/volume_index.h"
 #include "voxel/volume_writer.h"
@@ -13,8 +14,11 @@
 
 namespace voxref {
 
-/// Reads a folder of volumes (see VolumeFolderWriter), whoever wrote it, float32, float16 or uint8 (read as value /
-/// 255). Every read checks shape, type and finiteness. @throws Error with the file and what is wrong
+/// Opens a volume's file and holds it against its entry. @throws Error with the file and what is wrong
+ArrayFile open_volume(const std::filesystem::path& folder, const VolumeEntry& entry);
+
+/// Reads a folder of volumes (see VolumeFolderWriter), whoever wrote it, in whichever format ArrayFile reads. Every
+/// read checks shape, type and finiteness. @throws Error with the file and what is wrong
 class VolumeFolder {
  public:
   explicit VolumeFolder(std::filesystem::path folder);
@@ -37,7 +41,7 @@ class VolumeFolder {
 
  private:
   /// Opens a volume and holds it against its entry and the size that its place in the pipeline asks for.
-  NpyReader open(const VolumeEntry& entry, const glm::ivec3& size, size_t least_channels) const;
+  ArrayFile open(const VolumeEntry& entry, const glm::ivec3& size, size_t least_channels) const;
   template <class Texel>
   BrickVolume<Directional<Texel>> level(size_t level, const glm::ivec3& size, bool bounced) const;
   const VolumeEntry& entry(const std::string& name) const;

@@ -6,7 +6,10 @@
 
 #include "error.h"
 #include "file.h"
+#include "json_members.h"
+#include "voxel/array_file.h"
 #include "voxel/mipmap.h"
+#include "voxel/texel_format.h"
 
 namespace voxref {
 
@@ -19,6 +22,8 @@ constexpr size_t most_channels = 16;
 
 json to_json(const VolumeEntry& entry) {
   json j = {{"name", entry.name}, {"shape", entry.shape}, {"dtype", dtype_name(entry.type)}, {"stage", entry.stage}};
+  if (entry.file != entry.name + ".npy") j["file"] = entry.file;
+  if (entry.mip != 0) j["mip"] = entry.mip;
   if (!entry.face.empty()) j["face"] = entry.face;
   if (entry.level >= 0) j["level"] = entry.level;
   if (entry.shape[3] == 4) j["premultiplied"] = entry.premultiplied;
@@ -27,36 +32,7 @@ json to_json(const VolumeEntry& entry) {
   return j;
 }
 
-/// Reads members of an object, and says where and what is wrong.
-class Members {
- public:
-  Members(const json& object, std::string file, std::string place)
-      : object_(object), file_(std::move(file)), place_(std::move(place)) {
-    if (!object.is_object()) fail("", "is not an object");
-  }
-  template <class T>
-  T get(const std::string& key) const {
-    if (!object_.contains(key)) fail(key, "is missing");
-    try {
-      return object_.at(key).get<T>();
-    } catch (const json::exception&) {
-      fail(key, "has the wrong type");
-    }
-  }
-  template <class T>
-  T get(const std::string& key, const T& absent) const {
-    return object_.contains(key) ? get<T>(key) : absent;
-  }
-  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
-    throw Error(file_, place_ + (place_.empty() || key.empty() ? "" : ".") + key, what);
-  }
-
- private:
-  const json& object_;
-  std::string file_, place_;
-};
-
-Grid read_grid(const Members& members) {
+Grid read_grid(const JsonMembers& members) {
   Grid grid;
   const auto dims = members.get<std::array<int, 3>>("dims");
   const auto bounds = members.get<std::array<std::array<double, 3>, 2>>("bounds");
@@ -74,19 +50,39 @@ Grid read_grid(const Members& members) {
   return grid;
 }
 
-VolumeEntry read_entry(const Members& members) {
+/// The file of an entry: inside the folder, so that a folder from elsewhere cannot name what else is on this machine.
+std::string read_file_name(const JsonMembers& members, const std::string& name) {
+  const auto text = members.get<std::string>("file", name + ".npy");
+  const std::filesystem::path file(text);
+  const bool leaves = file.is_absolute() || std::ranges::find(file, "..") != file.end();
+  if (leaves || !file.has_filename() || text.find('\0') != text.npos) members.fail("file", "is no file of this folder");
+  if (!is_array_file(file)) members.fail("file", "is none of .npy, .dds and .raw");
+  return text;
+}
+
+/// A NumPy name, or that of a texel format.
+ElementType read_type(const JsonMembers& members, size_t channels) {
+  const auto dtype = members.get<std::string>("dtype");
+  if (const std::optional<ElementType> type = dtype_called(dtype)) return *type;
+  const TexelFormat* format = texel_format(dtype);
+  if (!format) members.fail("dtype", "is none of float32, float16, uint8, " + texel_format_names());
+  if (format->channels != channels) members.fail("dtype", "has another channel count than shape");
+  return format->type;
+}
+
+VolumeEntry read_entry(const JsonMembers& members) {
   VolumeEntry entry;
   entry.name = members.get<std::string>("name");
-  if (entry.name.empty() || entry.name.find_first_of("/\\") != std::string::npos)
-    members.fail("name", "'" + entry.name + "' is not the name of a file");
+  if (entry.name.empty() || entry.name.find_first_of(std::string("/\\\0", 3)) != std::string::npos)
+    members.fail("name", "is not the name of a file");
+  entry.file = read_file_name(members, entry.name);
+  entry.mip = members.get<int>("mip", 0);
+  if (entry.mip < 0) members.fail("mip", std::to_string(entry.mip) + " is below 0");
   entry.shape = members.get<std::array<size_t, 4>>("shape");
   for (int d = 0; d < 3; ++d)
     if (entry.shape[d] < 1 || entry.shape[d] > largest_side) members.fail("shape", "has a side out of range");
   if (entry.shape[3] < 1 || entry.shape[3] > most_channels) members.fail("shape", "has a channel count out of range");
-  const auto dtype = members.get<std::string>("dtype");
-  const std::optional<NpyType> type = dtype_called(dtype);
-  if (!type) members.fail("dtype", "'" + dtype + "' is not float32, float16 or uint8");
-  entry.type = *type;
+  entry.type = read_type(members, entry.shape[3]);
   entry.stage = members.get<std::string>("stage", "");
   entry.face = members.get<std::string>("face", "");
   entry.level = members.get<int>("level", -1);
@@ -94,14 +90,6 @@ VolumeEntry read_entry(const Members& members) {
   entry.alpha = members.get<std::string>("alpha", "");
   entry.encoding = members.get<std::string>("encoding", "");
   return entry;
-}
-
-json parse(const std::filesystem::path& file) {
-  try {
-    return json::parse(read_file(file));
-  } catch (const json::parse_error& error) {
-    throw Error(file.string(), "byte " + std::to_string(error.byte), "is not valid JSON");
-  }
 }
 
 }  // namespace
@@ -132,15 +120,15 @@ void write_volume_index(const std::filesystem::path& folder, const VolumeIndex& 
 
 VolumeIndex read_volume_index(const std::filesystem::path& folder) {
   const std::string file = index_file(folder).string();
-  const json document = parse(file);
-  const Members members(document, file, "");
+  const json document = read_json(file);
+  const JsonMembers members(document, file, "");
   VolumeIndex index;
   index.grid = read_grid(members);
   index.format = members.get<std::string>("format", "float32");
   if (members.get<std::string>("axis_order", "zyxc") != "zyxc") members.fail("axis_order", "is not zyxc");
   const auto volumes = members.get<json::array_t>("volumes");
   for (size_t i = 0; i < volumes.size(); ++i) {
-    const Members entry(volumes[i], file, "volumes[" + std::to_string(i) + "]");
+    const JsonMembers entry(volumes[i], file, "volumes[" + std::to_string(i) + "]");
     index.volumes.push_back(read_entry(entry));
     if (index.find(index.volumes.back().name) != &index.volumes.back()) entry.fail("name", "is there twice");
   }

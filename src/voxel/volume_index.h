@@ -4,16 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "voxel/array_layout.h"
 #include "voxel/grid.h"
-#include "voxel/npy.h"
 
 namespace voxref {
 
 /// One volume of a folder, as its volumes.json describes it.
 struct VolumeEntry {
-  std::string name;               ///< the file is name.npy
+  std::string name;
+  std::string file;               ///< in the folder, or below it; name.npy where volumes.json names none
+  int mip = 0;                    ///< level of detail in the file
   std::array<size_t, 4> shape{};  ///< Z, Y, X, C
-  NpyType type = NpyType::float32;
+  ElementType type = ElementType::float32;
   std::string stage;           ///< that made it: voxelize, shade, bounce, mipmap, "mipmap after bounce"
   std::string face;            ///< one of face_names; empty: none
   int level = -1;              ///< mip level, 0 at half the base resolution; -1: none

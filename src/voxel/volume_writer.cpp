@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "error.h"
+#include "voxel/npy.h"
 
 namespace voxref {
 
@@ -56,8 +57,9 @@ VolumeEntry VolumeFolderWriter::entry(const std::string& name, const glm::ivec3&
                                       const std::string& stage) const {
   VolumeEntry entry;
   entry.name = name;
+  entry.file = name + ".npy";
   entry.shape = {size_t(size.z), size_t(size.y), size_t(size.x), channels};
-  entry.type = storage_ == Storage::unorm8 ? NpyType::uint8 : NpyType::float32;
+  entry.type = storage_ == Storage::unorm8 ? ElementType::uint8 : ElementType::float32;
   entry.stage = stage;
   if (channels == 4) entry.alpha = "opacity";
   return entry;
@@ -66,7 +68,7 @@ VolumeEntry VolumeFolderWriter::entry(const std::string& name, const glm::ivec3&
 VolumeEntry VolumeFolderWriter::light_entry(const std::string& name, const glm::ivec3& size,
                                             const std::string& stage) const {
   VolumeEntry volume = entry(name, size, 4, stage);
-  if (storage_ == Storage::float16) volume.type = NpyType::float16;
+  if (storage_ == Storage::float16) volume.type = ElementType::float16;
   volume.premultiplied = true;
   return volume;
 }

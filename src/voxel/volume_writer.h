@@ -47,7 +47,7 @@ class VolumeFolderWriter {
   void write_sparse(const VolumeEntry& entry, const SurfaceGrid& surfaces,
                     const std::function<void(size_t i, float* channels)>& put);
   void remove_made_folders() const;
-  std::filesystem::path file(const VolumeEntry& entry) const { return folder_ / (entry.name + ".npy"); }
+  std::filesystem::path file(const VolumeEntry& entry) const { return folder_ / entry.file; }
   /// Of a volume of attributes, which only unorm8 does not hold in float32.
   VolumeEntry entry(const std::string& name, const glm::ivec3& size, size_t channels, const std::string& stage) const;
   /// Of a volume of radiance and opacity, premultiplied.

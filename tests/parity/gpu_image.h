@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/npy.h"
+#include "voxel/array_file.h"
 
 namespace voxref {
 
@@ -24,11 +24,9 @@ struct GpuImage {
 
 /// @param folder of one configuration, for instance shared/gpu/cornell_64
 inline GpuImage gpu_image(const std::filesystem::path& folder, const std::string& name) {
-  NpyReader reader(folder / "images" / (name + ".npy"));
-  GpuImage image{reader.shape().at(1), reader.shape().at(0), reader.shape().at(2), {}};
-  image.values.resize(image.height * reader.slice_size());
-  for (size_t row = 0; row < image.height; ++row)
-    reader.read_slice(row, std::span(image.values).subspan(row * reader.slice_size(), reader.slice_size()));
+  ArrayFile file(folder / "images" / (name + ".npy"));
+  GpuImage image{file.shape()[2], file.shape()[1], file.shape()[3], std::vector<float>(file.slice_size())};
+  file.read_slice(0, image.values);
   return image;
 }
 

@@ -37,9 +37,9 @@ struct VolumeDifference {
 
 /// Holds a .npy file of bytes against another. @param channels per texel
 inline VolumeDifference difference(const std::filesystem::path& ours, const std::filesystem::path& theirs) {
-  NpyReader a(ours), b(theirs);
+  ArrayFile a(ours), b(theirs);
   VolumeDifference result;
-  if (a.shape() != b.shape() || a.type() != NpyType::uint8 || b.type() != NpyType::uint8) {
+  if (a.shape() != b.shape() || a.type() != ElementType::uint8 || b.type() != ElementType::uint8) {
     result.texels = a.slice_size();
     result.first = "another shape or type";
     return result;

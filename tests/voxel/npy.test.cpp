@@ -3,12 +3,13 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
-#include "catch.h"
 #include "error.h"
 #include "file.h"
 #include "temporary_folder.h"
+#include "voxel/array_bytes.h"
 
 using namespace voxref;
 
@@ -23,24 +24,10 @@ std::string array_file(const std::string& dictionary, const std::string& values)
   return file + dictionary + values;
 }
 
-/// What the message says when `content` is read, or "read" when it can be.
 std::string complaint(const std::string& content) {
   const TemporaryFolder folder;
-  write_text(folder.path / "a.npy", content);
-  try {
-    NpyReader reader(folder.path / "a.npy");
-    std::vector<float> slice(reader.slice_size());
-    for (size_t i = 0; i < reader.shape()[0]; ++i) reader.read_slice(i, slice);
-    return "read";
-  } catch (const Error& error) {
-    const std::string what = error.what(), file = (folder.path / "a.npy").string();
-    CHECK(what.starts_with(file + ": "));
-    CHECK(what.find('\n') == what.npos);
-    return what.substr(file.size() + 2);
-  }
+  return complaint_of_array(folder.write("a.npy", content));
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
 }  // namespace
 
@@ -59,26 +46,26 @@ TEST_CASE("an array comes back bit by bit, denormals, negative zero and extremes
                                6,
                                7,
                                8};
-  write_npy(folder.path / "a.npy", NpyType::float32, shape, [&](size_t i, std::span<float> slice) {
+  write_npy(folder.path / "a.npy", ElementType::float32, shape, [&](size_t i, std::span<float> slice) {
     for (const float v : slice) CHECK(v == 0.0f);
     std::copy_n(values.begin() + 4 * i, 4, slice.begin());
   });
-  NpyReader reader(folder.path / "a.npy");
-  CHECK(reader.shape() == shape);
-  CHECK(reader.type() == NpyType::float32);
-  REQUIRE(reader.slice_size() == 4);
+  ArrayFile array(folder.path / "a.npy");
+  CHECK(array.shape() == std::array<size_t, 4>{3, 2, 2, 1});
+  CHECK(array.type() == ElementType::float32);
+  REQUIRE(array.slice_size() == 4);
   std::vector<float> slice(4);
-  for (const size_t i : {2, 0, 1}) {  // in any order
-    reader.read_slice(i, slice);
+  for (const size_t z : {2, 0, 1}) {  // in any order
+    array.read_slice(z, slice);
     for (size_t k = 0; k < 4; ++k)
-      CHECK(std::bit_cast<uint32_t>(slice[k]) == std::bit_cast<uint32_t>(values[4 * i + k]));
+      CHECK(std::bit_cast<uint32_t>(slice[k]) == std::bit_cast<uint32_t>(values[4 * z + k]));
   }
 }
 
 TEST_CASE("an array file is laid out as NumPy does it", "[npy]") {
   const TemporaryFolder folder;
   const std::vector<size_t> shape = {2, 3};
-  write_npy(folder.path / "a.npy", NpyType::float32, shape,
+  write_npy(folder.path / "a.npy", ElementType::float32, shape,
             [](size_t i, std::span<float> slice) { slice[2] = float(i + 1); });
   const std::string content = read_file(folder.path / "a.npy");
   CHECK(content.starts_with("\x93NUMPY"));
@@ -91,10 +78,10 @@ TEST_CASE("bytes read as byte times 1/255", "[npy]") {
   const TemporaryFolder folder;
   write_text(folder.path / "a.npy",
              array_file("{'descr': '|u1', 'fortran_order': False, 'shape': (1, 3), }", std::string("\x00\x7f\xff", 3)));
-  NpyReader reader(folder.path / "a.npy");
-  CHECK(reader.type() == NpyType::uint8);
+  ArrayFile array(folder.path / "a.npy");
+  CHECK(array.type() == ElementType::uint8);
   std::vector<float> slice(3);
-  reader.read_slice(0, slice);
+  array.read_slice(0, slice);
   CHECK(slice == std::vector<float>{0.0f, 127.0f * (1.0f / 255.0f), 1.0f});
 }
 
@@ -102,21 +89,18 @@ TEST_CASE("half floats are written as '<f2', rounded, and read back; too large a
   const TemporaryFolder folder;
   const std::vector<size_t> shape = {2, 3};  // not in fours
   const std::vector<float> values = {1.0f, 0.1f, -2.0f, 1e9f, 0.0f, 0x1p-24f};
-  write_npy(folder.path / "a.npy", NpyType::float16, shape,
+  write_npy(folder.path / "a.npy", ElementType::float16, shape,
             [&](size_t i, std::span<float> slice) { std::copy_n(values.begin() + 3 * long(i), 3, slice.begin()); });
   const std::string content = read_file(folder.path / "a.npy");
   CHECK(contains(content, "'descr': '<f2'"));
   CHECK(content.ends_with(std::string("\x00\x3c\x66\x2e\x00\xc0\xff\x7b\x00\x00\x01\x00", 12)));
-  NpyReader reader(folder.path / "a.npy");
-  CHECK(reader.type() == NpyType::float16);
-  std::vector<float> slice(3);
-  reader.read_slice(0, slice);
-  CHECK(slice == std::vector<float>{1.0f, 0x1.998p-4f, -2.0f});
-  reader.read_slice(1, slice);
-  CHECK(slice == std::vector<float>{65504.0f, 0.0f, 0x1p-24f});
-  const std::string infinite("\x00\x7c", 2);
-  CHECK(complaint(array_file("{'descr': '<f2', 'fortran_order': False, 'shape': (1,), }", infinite)) ==
-        "[0]: is not finite");
+  ArrayFile array(folder.path / "a.npy");
+  CHECK(array.type() == ElementType::float16);
+  CHECK(read_all(array) == std::vector<float>{1.0f, 0x1.998p-4f, -2.0f, 65504.0f, 0.0f, 0x1p-24f});
+  write_text(folder.path / "a.npy",
+             array_file("{'descr': '<f2', 'fortran_order': False, 'shape': (1, 1), }", std::string("\x00\x7c", 2)));
+  ArrayFile infinite(folder.path / "a.npy");
+  CHECK(read_all(infinite) == std::vector<float>{INFINITY});
 }
 
 TEST_CASE("a damaged array file is refused with its name and the reason", "[npy]") {
@@ -137,34 +121,58 @@ TEST_CASE("a damaged array file is refused with its name and the reason", "[npy]
   CHECK(
       contains(complaint(array_file("{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }", values)), "Fortran"));
   CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, 'shape': (2, -3), }", values)), "-3"));
-  CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, 'shape': (), }", values)),
-                 "0 dimensions"));
+  const auto with_shape = [&](const std::string& shape) {
+    return complaint(array_file("{'descr': '<f4', 'fortran_order': False, 'shape': " + shape + ", }", values));
+  };
+  CHECK(contains(with_shape("()"), "0 dimensions"));
+  CHECK(contains(with_shape("(6,)"), "1 dimensions"));
+  CHECK(contains(with_shape("(1, 1, 1, 2, 3)"), "5 dimensions"));
+  CHECK(contains(with_shape("(0, 999999999)"), "side '0'"));
   CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, }", values)), "no 'shape'"));
   CHECK(contains(complaint(array_file("{'descr': '<f4', 'fortran_order': False, 'shape': "
                                       "(999999999, 999999999, 999999999), }",
                                       values)),
                  "counted"));
   CHECK(contains(complaint("a text file"), "NumPy"));
-  CHECK_THROWS_AS(NpyReader("/nowhere/a.npy"), Error);
+  CHECK_THROWS_AS(ArrayFile("/nowhere/a.npy"), Error);
 }
 
-TEST_CASE("a value that is not finite is reported with its place", "[npy]") {
+TEST_CASE("two sides are an image, four a volume, and three what was asked for", "[npy]") {
+  const TemporaryFolder folder;
+  using Shape = std::array<size_t, 4>;
+  const auto shape_of = [&](std::initializer_list<size_t> sides, ArrayMeaning meaning = ArrayMeaning::by_shape) {
+    write_npy(folder.path / "a.npy", ElementType::uint8, std::vector(sides), [](size_t, std::span<float>) {});
+    return ArrayFile(folder.path / "a.npy", 0, meaning).shape();
+  };
+  CHECK(shape_of({2, 3}) == Shape{1, 2, 3, 1});
+  CHECK(shape_of({2, 3, 4}) == Shape{1, 2, 3, 4});
+  CHECK(shape_of({2, 3, 5}) == Shape{2, 3, 5, 1});
+  CHECK(shape_of({2, 3, 4}, ArrayMeaning::volume) == Shape{2, 3, 4, 1});
+  CHECK(shape_of({2, 3, 4, 5}) == Shape{2, 3, 4, 5});
+}
+
+TEST_CASE("NaN and infinity are read as they are, and found by their place", "[npy]") {
+  const TemporaryFolder folder;
   std::string values(24, '\0');
-  const float bad = std::nanf("");
-  std::memcpy(values.data() + 4 * 5, &bad, 4);
-  CHECK(complaint(array_file(float_dictionary, values)) == "[1,2]: is not finite");
-  const float infinite = INFINITY;
+  const float nan = std::nanf(""), infinite = INFINITY;
+  std::memcpy(values.data() + 4 * 5, &nan, 4);
   std::memcpy(values.data() + 4, &infinite, 4);
-  CHECK(complaint(array_file(float_dictionary, values)) == "[0,1]: is not finite");
+  write_text(folder.path / "a.npy", array_file(float_dictionary, values));
+  ArrayFile array(folder.path / "a.npy");
+  std::vector<float> slice(6);
+  array.read_slice(0, slice);
+  CHECK(slice[1] == infinite);
+  CHECK(std::isnan(slice[5]));
+  CHECK(array.place_of(0, 5) == "[0,1,2,0]");
 }
 
 TEST_CASE("an array that cannot be written leaves nothing behind", "[npy]") {
   const TemporaryFolder folder;
   const std::vector<size_t> shape = {2, 3};
-  CHECK_THROWS_AS(write_npy(folder.path / "none" / "a.npy", NpyType::float32, shape, [](size_t, std::span<float>) {}),
-                  Error);
   CHECK_THROWS_AS(
-      write_npy(folder.path / "a.npy", NpyType::float32, shape, [](size_t, std::span<float>) { throw Interrupted(); }),
-      Interrupted);
+      write_npy(folder.path / "none" / "a.npy", ElementType::float32, shape, [](size_t, std::span<float>) {}), Error);
+  CHECK_THROWS_AS(write_npy(folder.path / "a.npy", ElementType::float32, shape,
+                            [](size_t, std::span<float>) { throw Interrupted(); }),
+                  Interrupted);
   CHECK(std::filesystem::is_empty(folder.path));
 }

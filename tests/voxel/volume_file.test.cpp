@@ -1,6 +1,7 @@
 #include "voxel/volume_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <glm/geometric.hpp>
 
@@ -216,6 +217,20 @@ TEST_CASE("an opacity outside 0 to 1 is refused with its voxel", "[volume_file]"
   writer.write_base(base, false);
   writer.finish();
   CHECK(contains(message_of([&] { VolumeFolder(temporary.path).base(false); }), "radiance.npy: [3,2,1]: opacity"));
+}
+
+TEST_CASE("a value that is not finite is refused with its place", "[volume_file]") {
+  const TemporaryFolder temporary;
+  const Example example;
+  for (const float bad : {std::nanf(""), INFINITY}) {
+    example.write(temporary.path);
+    std::fstream file(temporary.path / "radiance.npy", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(-4 * 6, std::ios::end);  // the third channel of the last texel but one
+    file.write(reinterpret_cast<const char*>(&bad), 4);
+    file.close();
+    const std::string place = "radiance.npy: [20,13,11,2]: is not finite";
+    CHECK(contains(message_of([&] { VolumeFolder(temporary.path).base(false); }), place));
+  }
 }
 
 TEST_CASE("without a centroid volume voxel centres stand in", "[volume_file]") {
