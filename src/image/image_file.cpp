@@ -5,6 +5,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "error.h"
@@ -14,15 +15,60 @@ namespace voxref {
 
 namespace {
 
-/// OpenImageIO wants pixels interleaved; voxref keeps planes.
-std::vector<float> interleave(const Image& image) {
-  const size_t channels = image.channels().size();
-  std::vector<float> pixels(channels * image.pixel_count());
-  for (size_t c = 0; c < channels; ++c) {
-    const std::span<const float> plane = image.channel(image.channels()[c]);
-    for (size_t i = 0; i < plane.size(); ++i) pixels[i * channels + c] = plane[i];
-  }
-  return pixels;
+/// OpenImageIO's messages may have several lines; ours have one.
+std::string one_line(std::string message) {
+  while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back()))) message.pop_back();
+  std::ranges::replace(message, '\n', ' ');
+  return message;
+}
+
+[[noreturn]] void refuse(const std::string& file, const std::string& why) {
+  throw Error(file, "cannot be read as an image: " + one_line(why));
+}
+
+/// No compression that OpenImageIO knows packs a picture tighter; without the check a damaged header of a few bytes
+/// could ask for all memory.
+constexpr uint64_t tightest_packing = 1 << 16;
+
+void require_plausible(const std::string& file, const OIIO::ImageSpec& spec) {
+  if (spec.deep || spec.depth > 1) refuse(file, "it holds more than one value per pixel and channel");
+  std::error_code error;
+  const uint64_t bytes = std::filesystem::file_size(file, error);
+  if (!error && spec.image_bytes(/*native=*/true) / tightest_packing > bytes)
+    refuse(file, "its header asks for " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                     " pixels, which no file of " + std::to_string(bytes) + " bytes can hold");
+}
+
+/// The channels' names; those of a further part that have no layer, or are there already, get the part's name as layer.
+std::vector<std::string> channel_names(const OIIO::ImageSpec& spec, const Image& image, int part) {
+  std::vector<std::string> names = spec.channelnames;
+  if (part == 0) return names;
+  const std::string layer = spec.get_string_attribute("oiio:subimagename", std::to_string(part));
+  for (std::string& name : names)
+    if (name.find('.') == name.npos || image.has(name)) name = channel_name(layer, name);
+  return names;
+}
+
+/// Reads the part that `input` stands at, from the first wanted channel to the last.
+void add_part(OIIO::ImageInput& input, const std::string& file, int part, Image& image, const ChannelFilter& wanted) {
+  const OIIO::ImageSpec& spec = input.spec();
+  require_plausible(file, spec);
+  if (spec.width != image.width() || spec.height != image.height())
+    refuse(file, "part " + std::to_string(part) + " has another size than part 0");
+  const std::vector<std::string> names = channel_names(spec, image, part);
+  const auto is_wanted = [&](const std::string& name) { return !wanted || wanted(name); };
+  const auto first = std::ranges::find_if(names, is_wanted);
+  if (first == names.end()) return;
+  const auto end = std::find_if(names.rbegin(), names.rend(), is_wanted).base();
+  for (auto name = first; name != end; ++name)
+    if (is_wanted(*name) && (image.has(*name) || std::find(first, name, *name) != name))
+      refuse(file, "channel '" + *name + "' is there twice");
+  const std::span<const std::string> read(first, end);
+  std::vector<float> pixels(read.size() * image.pixel_count());
+  if (!input.read_image(part, 0, int(first - names.begin()), int(end - names.begin()), OIIO::TypeDesc::FLOAT,
+                        pixels.data()))
+    refuse(file, input.geterror());
+  add_interleaved(image, pixels, read, wanted);
 }
 
 }  // namespace
@@ -44,24 +90,27 @@ void write_exr(const std::filesystem::path& file, const Image& image) {
   });
 }
 
-Image read_image(const std::filesystem::path& file) {
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
-  if (!input) throw Error(file.string(), "cannot be read as an image: " + OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
-  Image image(spec.width, spec.height);
-  const size_t channels = spec.channelnames.size();
-  std::vector<float> pixels(channels * image.pixel_count());
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
-    throw Error(file.string(), "cannot be read as an image: " + input->geterror());
-  for (size_t c = 0; c < channels; ++c) {
-    const std::span<float> plane = image.add(spec.channelnames[c]);
-    for (size_t i = 0; i < plane.size(); ++i) plane[i] = pixels[i * channels + c];
-  }
+StoredImage read_stored_image(const std::filesystem::path& path, const ChannelFilter& wanted) {
+  const std::string file = path.string();
+  // Otherwise readers multiply colours by alpha, some of them before they undo the transfer.
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file, &as_stored);
+  if (!input) refuse(file, OIIO::geterror());
+  const OIIO::ImageSpec spec = input->spec();
+  StoredImage stored{image_for_file(file, size_t(std::max(spec.width, 0)), size_t(std::max(spec.height, 0))),
+                     !spec.format.is_floating_point(), spec.get_string_attribute("oiio:ColorSpace")};
   for (const OIIO::ParamValue& attribute : spec.extra_attribs)
     if (attribute.type() == OIIO::TypeDesc::STRING)
-      image.attributes[attribute.name().string()] = attribute.get_string();
-  return image;
+      stored.image.attributes[attribute.name().string()] = attribute.get_string();
+  // What further images of other formats are, thumbnails for instance, is no layer of the first.
+  const bool parts = std::string_view(input->format_name()) == "openexr";
+  for (int part = 0; part == 0 || (parts && input->seek_subimage(part, 0)); ++part)
+    add_part(*input, file, part, stored.image, wanted);
+  return stored;
 }
+
+Image read_image(const std::filesystem::path& file) { return read_stored_image(file).image; }
 
 std::vector<uint8_t> encode_png(int width, int height, std::span<const uint8_t> rgb) {
   std::vector<uint8_t> file;

@@ -2,9 +2,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "image/image.h"
+#include "image/interleaved.h"
 
 namespace voxref {
 
@@ -12,8 +14,18 @@ namespace voxref {
 /// whole or not at all. @throws Error with the path when it cannot be written
 void write_exr(const std::filesystem::path& file, const Image& image);
 
-/// Reads any image that OpenImageIO reads, as stored: no transfer function is undone. Channels keep their names; string
-/// attributes come along. @throws Error with the path when it is missing or damaged
+/// An image file's content, with what tells how its numbers are meant.
+struct StoredImage {
+  Image image;
+  bool integers = false;    ///< the file holds integers; the image has them divided by the largest
+  std::string color_space;  ///< OpenImageIO's name for what the file says; empty: nothing
+};
+
+/// Reads any image that OpenImageIO reads, as stored: no transfer function is undone, nothing multiplied by alpha.
+/// Channels keep their names; those of an OpenEXR file's further parts get the part's name as layer, unless they have
+/// one that is still free. String attributes come along.
+/// @throws Error with the path when it is missing or damaged, deep, or its parts differ in size
+StoredImage read_stored_image(const std::filesystem::path& file, const ChannelFilter& wanted = {});
 Image read_image(const std::filesystem::path& file);
 
 /// 8-bit RGB, rows from the top, as they shall be shown (already encoded for display): an entire PNG file in memory.

@@ -5,13 +5,11 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
+#include "image/transfer.h"
+
 namespace voxref {
 
 namespace {
-
-float srgb_decode(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
 
 /// Linear value of each 8-bit code: a table, because decoding stands inside every look-up's inner loop.
 std::array<float, 256> byte_table(bool srgb) {

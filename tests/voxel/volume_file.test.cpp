@@ -9,6 +9,7 @@
 #include "error.h"
 #include "file.h"
 #include "temporary_folder.h"
+#include "voxel/array_bytes.h"
 #include "voxel/mesh_scene.h"
 
 using namespace voxref;
@@ -59,8 +60,6 @@ std::string message_of(const std::function<void()>& action) {
   }
   return "";
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
 }  // namespace
 
@@ -182,6 +181,46 @@ TEST_CASE("a damaged volumes.json is refused with the place", "[volume_file]") {
   CHECK(contains(complaint("\"normal\"", "\"albedo\""), "volumes[1].name: is there twice"));
   CHECK(contains(complaint("\"normal\"", "\"../normal\""), "volumes[1].name"));
   CHECK(contains(complaint("\"voxel_size\": 1.0", "\"voxel_size\": -1.0"), "voxel_size"));
+}
+
+TEST_CASE("an entry may name its file, a mip level and a texel format", "[volume_file]") {
+  const TemporaryFolder temporary;
+  std::filesystem::create_directory(temporary.path / "dump");
+  const auto complaint = [&](const std::string& members) {
+    temporary.write("volumes.json", R"({"dims": [4, 4, 4], "bounds": [[0, 0, 0], [4, 4, 4]], "volumes": [
+                                        {"name": "radiance", "shape": [4, 4, 4, 4], )" +
+                                        members + "}]}");
+    return message_of([&] {
+      const BrickVolume<glm::vec4> base = VolumeFolder(temporary.path).base(false);
+      CHECK(base({3, 3, 3}) == glm::vec4(0.375f, 0.25f, 0.125f, 0.5f));
+    });
+  };
+  const auto four_floats = [](float r, float g, float b, float a) {
+    const std::array<float, 4> texel = {r, g, b, a};
+    return std::string(reinterpret_cast<const char*>(texel.data()), sizeof texel);
+  };
+  std::string wrong, right;
+  for (int i = 0; i < 512; ++i) wrong += four_floats(9, 9, 9, 1);
+  for (int i = 0; i < 64; ++i) right += four_floats(0.375f, 0.25f, 0.125f, 0.5f);
+  // 8x8x8 texels of r32g32b32a32_float and a second level of half of that: a DDS header, then the DX10 extension.
+  temporary.write("dump/texture.dds", words({0x20534444, 124, 0, 8, 8, 0, 8, 2}) + std::string(44, '\0') +
+                                          words({32, 4, 0x30315844, 0, 0, 0, 0, 0, 0, 0x200000, 0, 0, 0}) +
+                                          words({2, 4, 0, 1, 0}) + wrong + right);
+  temporary.write("texture.raw", right);
+  temporary.write("texture.raw.json", R"({"dims": [4, 4, 4], "format": "r32g32b32a32_float"})");
+  const std::string float32 = R"("dtype": "float32", "premultiplied": true, )";
+  CHECK(complaint(float32 + R"("file": "dump/texture.dds", "mip": 1)").empty());
+  CHECK(complaint(R"("dtype": "r32g32b32a32_float", "premultiplied": true, "file": "texture.raw")").empty());
+  CHECK(contains(complaint(float32 + R"("file": "dump/texture.dds")"), "texture.dds: header: shape is not"));
+  CHECK(contains(complaint(float32 + R"("file": "dump/texture.dds", "mip": 2)"), "mip 2: is not there"));
+  CHECK(contains(complaint(float32 + R"("file": "texture.raw", "mip": 1)"), "mip 1: is not there"));
+  CHECK(contains(complaint(R"("dtype": "uint8", "file": "texture.raw")"), "texture.raw: header: type is not"));
+  CHECK(contains(complaint(R"("dtype": "r8_unorm", "file": "texture.raw")"), "volumes[0].dtype: has another channel"));
+  CHECK(contains(complaint(R"("dtype": "bc7", "file": "texture.raw")"), "volumes[0].dtype: is none of float32"));
+  CHECK(contains(complaint(float32 + R"("mip": -1)"), "volumes[0].mip: -1 is below 0"));
+  for (const std::string file : {"../a.npy", "dump/../../a.npy", "/a.npy", "dump/", "", "a\\u0000.npy"})
+    CHECK(contains(complaint(float32 + "\"file\": \"" + file + "\""), "volumes[0].file: is no file of this folder"));
+  CHECK(contains(complaint(float32 + R"("file": "texture.exr")"), "volumes[0].file: is none of .npy, .dds and .raw"));
 }
 
 TEST_CASE("volumes that are missing, cut short or of another shape are refused by name", "[volume_file]") {

@@ -7,10 +7,9 @@
 #include <charconv>
 #include <cmath>
 #include <glm/trigonometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "file.h"
+#include "json_members.h"
 
 namespace voxref {
 
@@ -106,9 +105,7 @@ Settings make_settings(const SettingsOptions& options) {
   }
   if (!options.config.empty()) {
     try {
-      apply_json(settings, nlohmann::json::parse(read_file(options.config)));
-    } catch (const nlohmann::json::parse_error& error) {
-      throw Error(options.config, fmt::format("byte {}", error.byte), "is not JSON");
+      apply_json(settings, read_json(options.config));
     } catch (const Error& error) {
       const bool named = std::string_view(error.what()).starts_with(options.config);
       throw named ? error : Error(options.config, error.what());
