@@ -9,12 +9,16 @@
 namespace voxref {
 namespace {
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Runs a stage and adds the time that it took to `seconds`.
 template <class Stage>
 auto timed(double& seconds, const Stage& stage) {
   const auto start = std::chrono::steady_clock::now();
   auto result = stage();
-  seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  seconds += seconds_since(start);
   return result;
 }
 
@@ -41,19 +45,14 @@ std::map<std::string, size_t> count_bytes(const SurfaceGrid& surfaces, const Bas
   return bytes;
 }
 
-/// The pipeline with volumes of one storage.
+/// The stages between voxelization and image, with volumes of one storage.
 template <class Texel>
-ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
-                    const ConeTraceOutputs& outputs, const Progress& progress) {
+LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, const glm::vec3& background,
+                const Settings& settings, VolumeFolderWriter* folder, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  ConeTraceResult result;
+  LitVoxels result;
   StageSeconds& seconds = result.seconds;
-  result.grid = fit_grid(scene.bounds(), settings.grid);
-  std::optional<VolumeFolderWriter> folder;
-  if (outputs.volumes) folder.emplace(*outputs.volumes, result.grid, settings.storage);
-
-  SurfaceGrid surfaces =
-      timed(seconds.voxelize, [&] { return voxelize(scene, result.grid, settings.voxelize, progress); });
+  result.grid = surfaces.grid;
   result.voxels_occupied = surfaces.size();
   Shading shading = timed(seconds.shade, [&] {
     Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, progress);
@@ -73,7 +72,7 @@ ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, 
   if (bounces) {
     BasicBounceResult<Texel> bounced = timed(seconds.bounce, [&] {
       return bounce(surfaces, shading.radiance, std::move(pyramid), settings.bounce, settings.render.cone,
-                    settings.mipmap, view.background, progress);
+                    settings.mipmap, background, progress);
     });
     result.bounces = bounced.bounces;
     result.gain = bounced.gain;
@@ -85,31 +84,65 @@ ConeTraceResult run(const Scene& scene, const Caster& caster, const View& view, 
     }
   }
   result.bytes = count_bytes(surfaces, pyramid, bounces ? 2 : 1);
-  std::optional<LightVisibility> visibility;
-  if (settings.render.pixel.shadow == PixelShadow::visibility) visibility.emplace(surfaces, shading.visibility);
+  if (settings.render.pixel.shadow == PixelShadow::visibility) result.visibility.emplace(surfaces, shading.visibility);
   surfaces = {};  // the image needs none of them
   shading = {};
-  result.image = timed(seconds.cone_trace, [&] {
-    const LitVolume volume = lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
-    const LitScene lit{scene,          caster,
-                       volume,         settings.grid.bounds.value_or(scene.bounds()),
-                       settings.light, visibility ? &*visibility : nullptr};
-    return render_cones(lit, view, settings.render, progress);
+  result.volume = timed(seconds.cone_trace, [&] {
+    return lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
   });
-  if (folder) folder->finish();  // not before: a run that fails or is stopped leaves no volumes
-  result.mean = mean_color(result.image.image);
-  seconds.total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  seconds.total = seconds_since(start);
   return result;
 }
 
 }  // namespace
 
+LitVoxels light_voxels(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, const glm::vec3& background,
+                       const Settings& settings, VolumeFolderWriter* folder, const Progress& progress) {
+  return with_texel(settings.storage, [&]<class Texel>(std::type_identity<Texel>) {
+    return light<Texel>(scene, caster, std::move(surfaces), background, settings, folder, progress);
+  });
+}
+
+ConeTraceResult gather_image(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
+                             const LitVoxels& lit, const Progress& progress) {
+  ConeTraceResult result;
+  result.grid = lit.grid;
+  result.voxels_occupied = lit.voxels_occupied;
+  result.bounces = lit.bounces;
+  result.gain = lit.gain;
+  result.bytes = lit.bytes;
+  result.clamped_shade = lit.clamped_shade;
+  result.clamped_bounce = lit.clamped_bounce;
+  result.seconds = lit.seconds;
+  double image = 0.0;
+  result.image = timed(image, [&] {
+    const LitScene from{scene,          caster,
+                        lit.volume,     settings.grid.bounds.value_or(scene.bounds()),
+                        settings.light, lit.visibility ? &*lit.visibility : nullptr};
+    return render_cones(from, view, settings.render, progress);
+  });
+  result.seconds.cone_trace += image;
+  result.seconds.total += image;
+  result.mean = mean_color(result.image.image);
+  return result;
+}
+
 ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
                            const ConeTraceOutputs& outputs, const Progress& progress) {
   validate(settings);
-  return with_texel(settings.storage, [&]<class Texel>(std::type_identity<Texel>) {
-    return run<Texel>(scene, caster, view, settings, outputs, progress);
-  });
+  const auto start = std::chrono::steady_clock::now();
+  const Grid grid = fit_grid(scene.bounds(), settings.grid);
+  std::optional<VolumeFolderWriter> folder;
+  if (outputs.volumes) folder.emplace(*outputs.volumes, grid, settings.storage);
+  double voxelizing = 0.0;
+  SurfaceGrid surfaces = timed(voxelizing, [&] { return voxelize(scene, grid, settings.voxelize, progress); });
+  const LitVoxels lit = light_voxels(scene, caster, std::move(surfaces), view.background, settings,
+                                     folder ? &*folder : nullptr, progress);
+  ConeTraceResult result = gather_image(scene, caster, view, settings, lit, progress);
+  if (folder) folder->finish();  // not before: a run that fails or is stopped leaves no volumes
+  result.seconds.voxelize = voxelizing;
+  result.seconds.total = seconds_since(start);
+  return result;
 }
 
 }  // namespace voxref

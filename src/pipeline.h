@@ -9,6 +9,8 @@
 
 namespace voxref {
 
+class VolumeFolderWriter;
+
 /// Seconds of each stage, in the order of the pipeline.
 struct StageSeconds {
   double voxelize = 0, shade = 0, mipmap = 0, bounce = 0, cone_trace = 0, total = 0;
@@ -27,6 +29,19 @@ struct ConeTraceResult {
       bytes;  ///< per volume: surfaces, radiance, visibility, base, levels; `total` is the most held at once
 };
 
+/// What images are gathered from: the voxels after light was brought to them, filtered and bounced.
+struct LitVoxels {
+  Grid grid;
+  size_t voxels_occupied = 0;
+  LitVolume volume;
+  std::optional<LightVisibility> visibility;  ///< where pixel.shadow asks for it
+  int bounces = 0;
+  double gain = 0.0;
+  Clamping clamped_shade, clamped_bounce;  ///< as ConeTraceResult's
+  StageSeconds seconds;                    ///< cone_trace: of making the volume ready for marching; total: of all of it
+  std::map<std::string, size_t> bytes;     ///< as ConeTraceResult::bytes
+};
+
 struct ConeTraceOutputs {
   std::optional<std::filesystem::path> volumes;  ///< folder for every volume
 };
@@ -34,5 +49,13 @@ struct ConeTraceOutputs {
 /// The whole CPU port: voxelize, shade, mipmap, bounce, gather (spec.md), with the time and memory of each.
 ConeTraceResult cone_trace(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
                            const ConeTraceOutputs& outputs = {}, const Progress& progress = {});
+
+/// Its stages apart, for settings that share some: all that is done to voxelized surfaces (moved in: they are freed
+/// when no longer needed) ...
+LitVoxels light_voxels(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, const glm::vec3& background,
+                       const Settings& settings, VolumeFolderWriter* folder = nullptr, const Progress& progress = {});
+/// ... and the image; `seconds` and `bytes` are those of all stages but voxelization, which made no part of `lit`.
+ConeTraceResult gather_image(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
+                             const LitVoxels& lit, const Progress& progress = {});
 
 }  // namespace voxref
