@@ -3,7 +3,7 @@
 # Installs the packages that are missing, and further ones given; says what to do where that is not possible.
 install_missing_packages() {
   local packages=(g++ make cmake ninja-build libembree-dev libglm-dev libtinygltf-dev libopenimageio-dev openimageio-tools
-    libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev catch2 "$@")
+    libtbb-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev catch2 gnuplot-nox "$@")
   if ! command -v dpkg-query >/dev/null; then
     echo "$0: no Debian here; the packages below must come from elsewhere: ${packages[*]}" >&2
     return

@@ -46,6 +46,7 @@ int run(int argc, char* argv[]) {
   add_cone(program, command);
   add_check(program, command);
   add_stage(program, command);
+  add_study(program, command);
   add_bench(program, command);
   try {
     program.parse(argc, argv);

@@ -1,0 +1,164 @@
+#include "study/chart.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "error.h"
+#include "file.h"
+
+namespace voxref {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Okabe and Ito 2008, "Color Universal Design", without its yellow, which is too light on white.
+constexpr std::array<const char*, 7> colors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                               "#000000", "#56B4E9", "#E69F00"};
+/// gnuplot's filled symbols, then open ones.
+constexpr std::array<int, 10> symbols = {7, 5, 9, 11, 13, 6, 4, 8, 10, 12};
+
+/// In double quotes; gnuplot's markup is off.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return result + "\"";
+}
+
+bool drawable(const ChartPoint& point, const Chart& chart) {
+  const auto fits = [](double value, const Axis& axis) {
+    return std::isfinite(value) && (!axis.logarithmic || value > 0.0);
+  };
+  return fits(point.x, chart.x) && fits(point.y, chart.y);
+}
+
+std::string range(const Axis& axis) {
+  const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "*"; };
+  return "[" + end(axis.min) + ":" + end(axis.max) + "]";
+}
+
+std::string axis_lines(const Axis& axis, char name, bool crowded) {
+  std::string text =
+      fmt::format("set {}label {} noenhanced\nset {}range {}\n", name, quoted(axis.title), name, range(axis));
+  if (axis.logarithmic) text += fmt::format("set logscale {}\nset format {} \"%g\"\n", name, name);
+  if (axis.categories.empty()) return text;
+  text += fmt::format("set {}tics noenhanced {}(", name, crowded ? "rotate by -35 " : "");
+  for (size_t i = 0; i < axis.categories.size(); ++i)
+    text += fmt::format("{}{} {}", i > 0 ? ", " : "", quoted(axis.categories[i]), i);
+  return text + ")\n";
+}
+
+/// A data block: x, y, error, label, base; an error bar on a logarithmic axis stays above 0.
+std::string data_block(const Chart& chart, size_t index) {
+  std::string text = fmt::format("$data{} << EOD\n", index);
+  for (const ChartPoint& p : chart.series[index].points)
+    if (drawable(p, chart)) {
+      const double low = chart.y.logarithmic ? std::max(p.y - p.error, 0.01 * p.y) : p.y - p.error;
+      text += fmt::format("{} {} {} {} {} {}\n", p.x, p.y, low, p.y + p.error, quoted(p.label), p.base);
+    }
+  return text + "EOD\n";
+}
+
+std::vector<std::string> plots(const Chart& chart, size_t index) {
+  const Series& series = chart.series[index];
+  const auto has = [&](const auto& test) { return std::any_of(series.points.begin(), series.points.end(), test); };
+  if (!has([&](const ChartPoint& p) { return drawable(p, chart); })) return {};
+  const std::string data = fmt::format("$data{}", index),
+                    color = fmt::format("lc rgb '{}'", colors[index % colors.size()]);
+  const std::string title = series.title.empty() ? "notitle" : "title " + quoted(series.title) + " noenhanced";
+  const std::string symbol = fmt::format("pt {} ps 0.9", symbols[index % symbols.size()]);
+  std::vector<std::string> result;
+  switch (series.style) {
+    case ChartStyle::points:
+      result.push_back(fmt::format("{} using 1:2 with points {} {} {}", data, symbol, color, title));
+      break;
+    case ChartStyle::line:
+      result.push_back(fmt::format("{} using 1:2 with lines lw 2 {} {}", data, color, title));
+      break;
+    case ChartStyle::dashes:
+      result.push_back(fmt::format("{} using 1:2 with lines lw 1.5 dt 2 {} {}", data, color, title));
+      break;
+    case ChartStyle::line_points:
+      result.push_back(fmt::format("{} using 1:2 with linespoints lw 1.5 {} {} {}", data, symbol, color, title));
+      break;
+    case ChartStyle::bars:
+      result.push_back(fmt::format(
+          "{} using 1:(0.5*($2+$6)):(0.3):(0.5*abs($2-$6)) with boxxyerror fs solid 0.75 {} {}", data, color, title));
+      break;
+  }
+  if (has([](const ChartPoint& p) { return p.error > 0.0; }))
+    result.push_back(fmt::format("{} using 1:2:3:4 with yerrorbars pt 0 lw 1.2 {} notitle", data,
+                                 series.style == ChartStyle::bars ? "lc rgb 'black'" : color));
+  if (has([](const ChartPoint& p) { return !p.label.empty(); }))
+    result.push_back(fmt::format("{} using 1:{}:5 with labels noenhanced offset 0.6,0.7 left font ',9' notitle", data,
+                                 series.style == ChartStyle::bars ? "($2>$6?$2:$6)" : "2"));
+  return result;
+}
+
+/// @param file goes to gnuplot as an argument, not through a shell's eyes
+void run_gnuplot(const fs::path& gnuplot, const std::string& script, const std::string& name) {
+  const fs::path folder = fs::temp_directory_path();
+  std::string file = (folder / "voxref-XXXXXX").string();
+  const int descriptor = mkstemp(file.data());
+  if (descriptor < 0) throw Error(folder.string(), "takes no files");
+  close(descriptor);
+  const std::string messages = file + ".messages";
+  write_text(file, script);
+  const std::string line = "'" + gnuplot.string() + "' '" + file + "' 2>'" + messages + "'";
+  const int status = std::system(line.c_str());
+  std::string said = read_file(messages);
+  fs::remove(file);
+  fs::remove(messages);
+  std::replace(said.begin(), said.end(), '\n', ' ');
+  if (status != 0) throw Error("gnuplot", name, said);
+}
+
+}  // namespace
+
+std::string gnuplot_script(const Chart& chart, const std::string& terminal, const std::string& output) {
+  std::string text = terminal == "svg"
+                         ? "set terminal svg size 900,560 font 'Helvetica,13' background rgb 'white'\n"
+                         : "set terminal pngcairo size 1350,840 font 'Helvetica,13' fontscale 1.4 lw 1.4\n";
+  text += fmt::format("set output {}\nset title {} noenhanced\n", quoted(output), quoted(chart.title));
+  text += "set grid lc rgb '#dddddd'\nset border 3\nset tics nomirror\n";
+  const auto listed =
+      std::count_if(chart.series.begin(), chart.series.end(), [](const Series& s) { return !s.title.empty(); });
+  text +=
+      listed > 0 ? fmt::format("set key outside below {}\n", listed > 3 ? "maxrows 3" : "maxrows 1") : "set key off\n";
+  constexpr size_t few = 6;  // categories that fit side by side
+  text += axis_lines(chart.x, 'x', chart.x.categories.size() > few) + axis_lines(chart.y, 'y', false);
+  if (!chart.x.categories.empty())
+    text += fmt::format("set xrange [-0.6:{}]\n", static_cast<double>(chart.x.categories.size()) - 0.4);
+  std::string plot;
+  for (size_t i = 0; i < chart.series.size(); ++i) {
+    text += data_block(chart, i);
+    for (const std::string& element : plots(chart, i)) plot += (plot.empty() ? "plot " : ", \\\n     ") + element;
+  }
+  if (plot.empty()) throw Error("chart", chart.name, "has nothing to draw");
+  return text + plot + "\n";
+}
+
+std::optional<fs::path> find_gnuplot() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (const fs::path file = fs::path(folder) / "gnuplot"; ::access(file.c_str(), X_OK) == 0) return file;
+  return std::nullopt;
+}
+
+void draw(const Chart& chart, const fs::path& gnuplot, const fs::path& folder) {
+  const fs::path file = folder / chart.name;
+  write_text(file.string() + ".gnuplot", gnuplot_script(chart, "svg", chart.name + ".svg"));
+  for (const std::string terminal : {"svg", "png"})
+    write_atomically(file.string() + "." + terminal, [&](const fs::path& temporary) {
+      run_gnuplot(gnuplot, gnuplot_script(chart, terminal, temporary.string()), chart.name);
+    });
+}
+
+}  // namespace voxref

@@ -1,0 +1,25 @@
+#include "study/study.h"
+
+#include <array>
+#include <chrono>
+
+namespace voxref {
+
+Section timed_section(const std::string& title, const std::function<void(Section&)>& make) {
+  const auto start = std::chrono::steady_clock::now();
+  Section section;
+  section.title = title;
+  make(section);
+  section.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return section;
+}
+
+std::span<const Study> studies() {
+  static const std::array list = {
+      Study{"pareto", "error of the indirect light against time, for many settings and for the path tracer",
+            run_pareto},
+  };
+  return list;
+}
+
+}  // namespace voxref

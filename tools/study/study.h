@@ -1,0 +1,61 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "progress.h"
+#include "scene/caster.h"
+#include "scene/scene.h"
+#include "study/chart.h"
+#include "study/table.h"
+
+namespace voxref {
+
+/// What one question was answered with.
+struct Section {
+  std::string title;
+  std::string text;  ///< paragraphs, an empty line between them: what was done, what it shows
+  std::vector<Table> tables;
+  std::vector<Chart> charts;
+  double seconds = 0;  ///< that it took
+};
+
+struct StudyResult {
+  std::string name, title;
+  std::vector<Section> sections;
+  std::vector<std::string> skipped;  ///< what was left out, and why
+};
+
+/// A scene with the camera that studies look through.
+struct StudyScene {
+  std::string name;
+  Scene scene;
+  View view;  ///< its size is the study's to choose; the camera's aspect holds
+};
+
+/// What a study is asked for.
+struct StudyRequest {
+  bool quick = false;               ///< small sizes: minutes instead of an hour
+  std::vector<StudyScene> scenes;   ///< empty: the study's own
+  std::filesystem::path assets;     ///< folder that holds assets/, the larger public scenes; empty: there are none
+  std::filesystem::path gpu_image;  ///< a user's own rendering of the (single) scene for `ladder`; empty: none
+  Progress progress;
+};
+
+/// Calls `make`, which fills a section, and notes the time.
+Section timed_section(const std::string& title, const std::function<void(Section&)>& make);
+
+struct Study {
+  std::string name, sentence;
+  StudyResult (*run)(const StudyRequest& request);
+};
+
+/// All studies, in the order in which `all` runs them.
+std::span<const Study> studies();
+
+StudyResult run_pareto(const StudyRequest& request);
+
+}  // namespace voxref
