@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 
 #include "error.h"
@@ -65,40 +66,63 @@ std::string data_block(const Chart& chart, size_t index) {
   return text + "EOD\n";
 }
 
+/// Labels of lines stand below their points, others above: where a line runs through points both can be read.
+std::string label_offset(ChartStyle style) { return style == ChartStyle::line ? "0.4,-0.8" : "0.6,0.7"; }
+
 std::vector<std::string> plots(const Chart& chart, size_t index) {
   const Series& series = chart.series[index];
   const auto has = [&](const auto& test) { return std::any_of(series.points.begin(), series.points.end(), test); };
   if (!has([&](const ChartPoint& p) { return drawable(p, chart); })) return {};
+  const bool errors = has([](const ChartPoint& p) { return p.error > 0.0; });
+  const bool bars = series.style == ChartStyle::bars;
   const std::string data = fmt::format("$data{}", index),
                     color = fmt::format("lc rgb '{}'", colors[index % colors.size()]);
   const std::string title = series.title.empty() ? "notitle" : "title " + quoted(series.title) + " noenhanced";
   const std::string symbol = fmt::format("pt {} ps 0.9", symbols[index % symbols.size()]);
   std::vector<std::string> result;
+  const auto add = [&](const std::string& columns, const std::string& style) {
+    result.push_back(fmt::format("{} using {} with {} {} {}", data, columns, style, color, title));
+  };
   switch (series.style) {
     case ChartStyle::points:
-      result.push_back(fmt::format("{} using 1:2 with points {} {} {}", data, symbol, color, title));
+      add(errors ? "1:2:3:4" : "1:2", (errors ? "yerrorbars " : "points ") + symbol);
       break;
     case ChartStyle::line:
-      result.push_back(fmt::format("{} using 1:2 with lines lw 2 {} {}", data, color, title));
+      add("1:2", "lines lw 2");
       break;
     case ChartStyle::dashes:
-      result.push_back(fmt::format("{} using 1:2 with lines lw 1.5 dt 2 {} {}", data, color, title));
+      add("1:2", "lines lw 1.5 dt 2");
       break;
     case ChartStyle::line_points:
-      result.push_back(fmt::format("{} using 1:2 with linespoints lw 1.5 {} {} {}", data, symbol, color, title));
+      add(errors ? "1:2:3:4" : "1:2", (errors ? "yerrorlines lw 1.5 " : "linespoints lw 1.5 ") + symbol);
       break;
     case ChartStyle::bars:
-      result.push_back(fmt::format(
-          "{} using 1:(0.5*($2+$6)):(0.3):(0.5*abs($2-$6)) with boxxyerror fs solid 0.75 {} {}", data, color, title));
+      add("1:(0.5*($2+$6)):(0.3):(0.5*abs($2-$6))", "boxxyerror fs solid 0.75");
       break;
   }
-  if (has([](const ChartPoint& p) { return p.error > 0.0; }))
-    result.push_back(fmt::format("{} using 1:2:3:4 with yerrorbars pt 0 lw 1.2 {} notitle", data,
-                                 series.style == ChartStyle::bars ? "lc rgb 'black'" : color));
+  if (bars && errors)
+    result.push_back(fmt::format("{} using 1:2:3:4 with yerrorbars pt -1 lw 1.5 lc rgb 'black' notitle", data));
   if (has([](const ChartPoint& p) { return !p.label.empty(); }))
-    result.push_back(fmt::format("{} using 1:{}:5 with labels noenhanced offset 0.6,0.7 left font ',9' notitle", data,
-                                 series.style == ChartStyle::bars ? "($2>$6?$2:$6)" : "2"));
+    result.push_back(fmt::format("{} using 1:{}:5 with labels noenhanced offset {} left font ',9' notitle", data,
+                                 bars ? "($2>$6?$2:$6)" : "2", label_offset(series.style)));
   return result;
+}
+
+/// The ends of a logarithmic axis: gnuplot's own would be whole decades. @param value of a point on that axis
+template <class Value>
+Axis fitted(Axis axis, const Chart& chart, const Value& value) {
+  if (!axis.logarithmic) return axis;
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const Series& series : chart.series)
+    for (const ChartPoint& point : series.points)
+      if (drawable(point, chart)) {
+        low = std::min(low, value(point));
+        high = std::max(high, value(point));
+      }
+  constexpr double margin = 1.4;
+  if (!axis.min) axis.min = low / margin;
+  if (!axis.max) axis.max = high * margin;
+  return axis;
 }
 
 /// @param file goes to gnuplot as an argument, not through a shell's eyes
@@ -126,13 +150,17 @@ std::string gnuplot_script(const Chart& chart, const std::string& terminal, cons
                          ? "set terminal svg size 900,560 font 'Helvetica,13' background rgb 'white'\n"
                          : "set terminal pngcairo size 1350,840 font 'Helvetica,13' fontscale 1.4 lw 1.4\n";
   text += fmt::format("set output {}\nset title {} noenhanced\n", quoted(output), quoted(chart.title));
-  text += "set grid lc rgb '#dddddd'\nset border 3\nset tics nomirror\n";
-  const auto listed =
-      std::count_if(chart.series.begin(), chart.series.end(), [](const Series& s) { return !s.title.empty(); });
-  text +=
-      listed > 0 ? fmt::format("set key outside below {}\n", listed > 3 ? "maxrows 3" : "maxrows 1") : "set key off\n";
-  constexpr size_t few = 6;  // categories that fit side by side
-  text += axis_lines(chart.x, 'x', chart.x.categories.size() > few) + axis_lines(chart.y, 'y', false);
+  text += "set grid xtics ytics lt 1 lc rgb '#cccccc'\nset border 3\nset tics nomirror\n";
+  const auto listed = static_cast<int>(std::count_if(chart.series.begin(), chart.series.end(),
+                                                     [](const Series& series) { return !series.title.empty(); }));
+  const int rows = (listed + 1) / 2;  // of the legend, which has two columns
+  constexpr size_t few = 6;           // categories that fit side by side
+  const bool crowded = chart.x.categories.size() > few;
+  text += listed > 0
+              ? fmt::format("set key outside below maxrows {}\nset bmargin {}\n", rows, 4 + rows + (crowded ? 7 : 0))
+              : "set key off\n";
+  text += axis_lines(fitted(chart.x, chart, [](const ChartPoint& p) { return p.x; }), 'x', crowded);
+  text += axis_lines(fitted(chart.y, chart, [](const ChartPoint& p) { return p.y; }), 'y', false);
   if (!chart.x.categories.empty())
     text += fmt::format("set xrange [-0.6:{}]\n", static_cast<double>(chart.x.categories.size()) - 0.4);
   std::string plot;

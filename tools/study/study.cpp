@@ -18,6 +18,7 @@ std::span<const Study> studies() {
   static const std::array list = {
       Study{"pareto", "error of the indirect light against time, for many settings and for the path tracer",
             run_pareto},
+      Study{"ladder", "from the path tracer to the shipped settings, one approximation at a time", run_ladder},
   };
   return list;
 }

@@ -57,5 +57,6 @@ struct Study {
 std::span<const Study> studies();
 
 StudyResult run_pareto(const StudyRequest& request);
+StudyResult run_ladder(const StudyRequest& request);
 
 }  // namespace voxref

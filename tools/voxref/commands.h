@@ -12,6 +12,7 @@ void add_cone(CLI::App& program, Run& run);
 void add_check(CLI::App& program, Run& run);
 void add_stage(CLI::App& program, Run& run);
 void add_study(CLI::App& program, Run& run);
+void add_plan(CLI::App& program, Run& run);
 void add_bench(CLI::App& program, Run& run);
 
 /// Exit statuses (the third one, 2: could not do it, is main's).

@@ -47,6 +47,7 @@ int run(int argc, char* argv[]) {
   add_check(program, command);
   add_stage(program, command);
   add_study(program, command);
+  add_plan(program, command);
   add_bench(program, command);
   try {
     program.parse(argc, argv);

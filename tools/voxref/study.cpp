@@ -21,7 +21,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string name, output;
+  std::string name, output, gpu_image;
   std::vector<std::string> scenes;
   bool list = false, quick = false;
 };
@@ -84,6 +84,7 @@ int run_study(const Options& options) {
   StudyRequest request;
   request.quick = options.quick;
   request.assets = find_assets();
+  request.gpu_image = options.gpu_image;
   request.progress = terminal.progress();
   for (const std::string& file : options.scenes) request.scenes.push_back(load(file, terminal));
 
@@ -115,6 +116,8 @@ void add_study(CLI::App& program, Run& run) {
   add_output_option(*command, options->output, "DIR", "folder for tables, charts, result.json and report.html");
   command->get_option("-o")->required(false);  // --list writes nothing
   command->add_flag("--quick", options->quick, "small sizes: minutes instead of an hour");
+  command->add_option("--gpu", options->gpu_image, "your own rendering of SCENE, R,G,B before tone mapping, for ladder")
+      ->type_name("FILE");
   add_common_options(*command, options->common);
   command->footer(
       "The larger public scenes are looked for in VOXREF_ASSETS/assets, then in ../shared/assets. Charts need "
