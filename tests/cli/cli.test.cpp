@@ -17,7 +17,7 @@ const std::string small_cone = " --size 12x10 --set grid.resolution=24 --set bou
 
 TEST_CASE("every command has help with an example", "[cli]") {
   const Workplace place;
-  for (const char* command : {"", "info", "path", "merge", "cone", "check", "stage", "bench"}) {
+  for (const char* command : {"", "info", "path", "merge", "cone", "check", "stage", "study", "plan", "bench"}) {
     const Outcome outcome = place.run(std::string(command) + " --help");
     CAPTURE(command);
     CHECK(outcome.status == 0);

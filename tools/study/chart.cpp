@@ -44,12 +44,27 @@ std::string range(const Axis& axis) {
   return "[" + end(axis.min) + ":" + end(axis.max) + "]";
 }
 
-std::string axis_lines(const Axis& axis, char name, bool crowded) {
+/// How the names of categories stand under the axis, and how many lines they need.
+struct CategoryStyle {
+  std::string rotation;
+  int lines = 0;
+};
+CategoryStyle category_style(const std::vector<std::string>& categories) {
+  constexpr size_t few = 6, many = 14;  // that fit side by side; that fit when they lean
+  size_t longest = 0;
+  for (const std::string& name : categories) longest = std::max(longest, name.size());
+  const auto length = static_cast<double>(longest);
+  if (categories.size() <= few) return {};
+  if (categories.size() <= many) return {"rotate by 30 right ", static_cast<int>(0.3 * length)};
+  return {"rotate by 90 right ", static_cast<int>(0.48 * length)};
+}
+
+std::string axis_lines(const Axis& axis, char name) {
   std::string text =
       fmt::format("set {}label {} noenhanced\nset {}range {}\n", name, quoted(axis.title), name, range(axis));
   if (axis.logarithmic) text += fmt::format("set logscale {}\nset format {} \"%g\"\n", name, name);
   if (axis.categories.empty()) return text;
-  text += fmt::format("set {}tics noenhanced {}(", name, crowded ? "rotate by -35 " : "");
+  text += fmt::format("set {}tics noenhanced {}font ',11' (", name, category_style(axis.categories).rotation);
   for (size_t i = 0; i < axis.categories.size(); ++i)
     text += fmt::format("{}{} {}", i > 0 ? ", " : "", quoted(axis.categories[i]), i);
   return text + ")\n";
@@ -101,7 +116,8 @@ std::vector<std::string> plots(const Chart& chart, size_t index) {
       break;
   }
   if (bars && errors)
-    result.push_back(fmt::format("{} using 1:2:3:4 with yerrorbars pt -1 lw 1.5 lc rgb 'black' notitle", data));
+    result.push_back(fmt::format(
+        "{} using 1:3:(0):($4-$3) with vectors heads size screen 0.004,90 lw 1.5 lc rgb 'black' notitle", data));
   if (has([](const ChartPoint& p) { return !p.label.empty(); }))
     result.push_back(fmt::format("{} using 1:{}:5 with labels noenhanced offset {} left font ',9' notitle", data,
                                  bars ? "($2>$6?$2:$6)" : "2", label_offset(series.style)));
@@ -154,13 +170,11 @@ std::string gnuplot_script(const Chart& chart, const std::string& terminal, cons
   const auto listed = static_cast<int>(std::count_if(chart.series.begin(), chart.series.end(),
                                                      [](const Series& series) { return !series.title.empty(); }));
   const int rows = (listed + 1) / 2;  // of the legend, which has two columns
-  constexpr size_t few = 6;           // categories that fit side by side
-  const bool crowded = chart.x.categories.size() > few;
-  text += listed > 0
-              ? fmt::format("set key outside below maxrows {}\nset bmargin {}\n", rows, 4 + rows + (crowded ? 7 : 0))
-              : "set key off\n";
-  text += axis_lines(fitted(chart.x, chart, [](const ChartPoint& p) { return p.x; }), 'x', crowded);
-  text += axis_lines(fitted(chart.y, chart, [](const ChartPoint& p) { return p.y; }), 'y', false);
+  text += listed > 0 ? fmt::format("set key outside below maxrows {}\nset bmargin {}\n", rows,
+                                   4 + rows + category_style(chart.x.categories).lines)
+                     : "set key off\n";
+  text += axis_lines(fitted(chart.x, chart, [](const ChartPoint& p) { return p.x; }), 'x');
+  text += axis_lines(fitted(chart.y, chart, [](const ChartPoint& p) { return p.y; }), 'y');
   if (!chart.x.categories.empty())
     text += fmt::format("set xrange [-0.6:{}]\n", static_cast<double>(chart.x.categories.size()) - 0.4);
   std::string plot;

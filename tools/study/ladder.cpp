@@ -96,13 +96,13 @@ Chart waterfall(const StudyScene& scene, const std::vector<RungImage>& rungs, co
     const RungStep step = rung_step(rungs[r - 1], rungs[r], pixels);
     const double bias = percent * step.bias;
     chart.series[bias < 0.0 ? 1 : 0].points.push_back(
-        {double(r - 1), level + bias, percent * step.bias_error, fmt::format("{:+.2g}", bias), level});
+        {double(r - 1), level + bias, percent * step.bias_error, fmt::format("{:+.2f}", bias), level});
     level += bias;
     chart.x.categories.push_back(rungs[r].name);
   }
   const RungStep total = rung_step(rungs[0], rungs[count - 1], pixels);
   chart.series[2].points.push_back({double(count - 1), percent * total.bias, percent * total.bias_error,
-                                    fmt::format("{:+.2g}", percent * total.bias), 0.0});
+                                    fmt::format("{:+.2f}", percent * total.bias), 0.0});
   chart.x.categories.emplace_back("sum");
   return chart;
 }
