@@ -50,19 +50,31 @@ struct CategoryStyle {
   int lines = 0;
 };
 CategoryStyle category_style(const std::vector<std::string>& categories) {
-  constexpr size_t few = 6, many = 14;  // that fit side by side; that fit when they lean
+  constexpr size_t most_letters = 70, many = 14;  // that fit side by side; names that fit when they lean
   size_t longest = 0;
   for (const std::string& name : categories) longest = std::max(longest, name.size());
   const auto length = static_cast<double>(longest);
-  if (categories.size() <= few) return {};
+  if (categories.size() * longest <= most_letters) return {};
   if (categories.size() <= many) return {"rotate by 30 right ", static_cast<int>(0.3 * length)};
   return {"rotate by 90 right ", static_cast<int>(0.48 * length)};
+}
+
+/// Numbers at 1, 2 and 5 too where a logarithmic axis spans few decades.
+std::string fine_tics(const Axis& axis, char name) {
+  if (!axis.min || !axis.max || *axis.max / *axis.min > 300.0) return "";
+  std::string list;
+  for (double decade = std::pow(10.0, std::floor(std::log10(*axis.min))); decade <= *axis.max; decade *= 10.0)
+    for (const double digit : {1.0, 2.0, 5.0})
+      if (digit * decade >= *axis.min && digit * decade <= *axis.max)
+        list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", digit * decade);
+  return list.empty() ? "" : fmt::format("set {}tics ({})\n", name, list);
 }
 
 std::string axis_lines(const Axis& axis, char name) {
   std::string text =
       fmt::format("set {}label {} noenhanced\nset {}range {}\n", name, quoted(axis.title), name, range(axis));
-  if (axis.logarithmic) text += fmt::format("set logscale {}\nset format {} \"%g\"\n", name, name);
+  if (axis.logarithmic)
+    text += fmt::format("set logscale {}\nset format {} \"%g\"\n", name, name) + fine_tics(axis, name);
   if (axis.categories.empty()) return text;
   text += fmt::format("set {}tics noenhanced {}font ',11' (", name, category_style(axis.categories).rotation);
   for (size_t i = 0; i < axis.categories.size(); ++i)
@@ -93,7 +105,7 @@ std::vector<std::string> plots(const Chart& chart, size_t index) {
   const std::string data = fmt::format("$data{}", index),
                     color = fmt::format("lc rgb '{}'", colors[index % colors.size()]);
   const std::string title = series.title.empty() ? "notitle" : "title " + quoted(series.title) + " noenhanced";
-  const std::string symbol = fmt::format("pt {} ps 0.9", symbols[index % symbols.size()]);
+  const std::string symbol = fmt::format("pt {} ps 1.1", symbols[index % symbols.size()]);
   std::vector<std::string> result;
   const auto add = [&](const std::string& columns, const std::string& style) {
     result.push_back(fmt::format("{} using {} with {} {} {}", data, columns, style, color, title));
