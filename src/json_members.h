@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "error.h"
+#include "printable.h"
 
 namespace voxref {
 
@@ -41,7 +42,7 @@ class JsonMembers {
   /// @throws Error naming the first key that is none of these
   void require_only(std::initializer_list<std::string> keys) const {
     for (const auto& [key, _] : object_.items())
-      if (std::find(keys.begin(), keys.end(), key) == keys.end()) fail(key, "is no key of this file");
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) fail(printable(key), "is no key of this file");
   }
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
     throw Error(file_, place_ + (place_.empty() || key.empty() ? "" : ".") + key, what);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "error.h"
+#include "printable.h"
 #include "settings_table.h"
 
 namespace voxref {
@@ -34,7 +35,7 @@ const Parameter& find_parameter(const std::string& key) {
     return edit_distance(a.key, key) < edit_distance(b.key, key);
   };
   const auto nearest = std::min_element(parameters().begin(), parameters().end(), nearer);
-  if (nearest->key != key) throw Error(key, "unknown parameter; the nearest is '" + nearest->key + "'");
+  if (nearest->key != key) throw Error(printable(key), "unknown parameter; the nearest is '" + nearest->key + "'");
   return *nearest;
 }
 
@@ -104,7 +105,7 @@ Settings villegas2016() {
 Settings profile(std::string_view name) {
   if (name == "radiometric") return {};
   if (name == "villegas2016") return villegas2016();
-  throw Error("profile '" + std::string(name) + "' is not available; there are: radiometric, villegas2016");
+  throw Error("profile '" + printable(name) + "' is not available; there are: radiometric, villegas2016");
 }
 
 void validate(const Settings& settings) {

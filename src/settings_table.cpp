@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "error.h"
+#include "printable.h"
 
 namespace voxref {
 
@@ -301,7 +302,8 @@ std::vector<Parameter> image_parameters() {
 }  // namespace
 
 void refuse(const std::string& key, const json& value, const std::string& expected) {
-  throw Error(key, value.dump() + " is not " + expected);
+  const std::string text = value.dump(-1, ' ', /*ensure_ascii=*/true, json::error_handler_t::replace);
+  throw Error(key, printable(text) + " is not " + expected);
 }
 
 const std::vector<Parameter>& parameters() {

@@ -59,8 +59,10 @@ void ArrayFile::load(size_t z) {
   if (std::abs(layout_.stride[0]) < range.end - range.begin) range = extent(layout_, int64_t(layout_.origin), 0);
   const auto size = size_t(range.end - range.begin);
   if (window_.size() == size && window_offset_ == uint64_t(range.begin)) return;
+  window_offset_ = nowhere;  // until it is read: reading may fail
   window_.resize(size);
-  file_.read(window_offset_ = uint64_t(range.begin), window_);
+  file_.read(uint64_t(range.begin), window_);
+  window_offset_ = uint64_t(range.begin);
 }
 
 void ArrayFile::read_slice(size_t z, std::span<float> slice) {
@@ -68,7 +70,7 @@ void ArrayFile::read_slice(size_t z, std::span<float> slice) {
   load(z);
   const auto [_, height, width, channels] = shape();
   const size_t texel_bytes = channels * bytes_of(type());
-  const int64_t first = int64_t(layout_.origin - window_offset_) + layout_.stride[0] * int64_t(z);
+  const int64_t first = int64_t(layout_.origin) - int64_t(window_offset_) + layout_.stride[0] * int64_t(z);
   for (size_t y = 0; y < height; ++y) {
     const std::byte* row = window_.data() + first + layout_.stride[1] * int64_t(y);
     const std::span<float> decoded = slice.subspan(y * width * channels, width * channels);

@@ -46,8 +46,9 @@ class ArrayFile {
 
   BinaryFile file_;
   ArrayLayout layout_;
-  uint64_t window_offset_ = 0;     ///< in the file
-  std::vector<std::byte> window_;  ///< a slice with what lies between its rows, or all of the array
+  static constexpr uint64_t nowhere = UINT64_MAX;
+  uint64_t window_offset_ = nowhere;  ///< in the file
+  std::vector<std::byte> window_;     ///< a slice with what lies between its rows, or all of the array
 };
 
 }  // namespace voxref

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "error.h"
+#include "printable.h"
 #include "voxel/texel_format.h"
 
 namespace voxref {
@@ -93,10 +94,8 @@ Texture read_texture(BinaryFile& file) {
   const bool volume = (header.caps[1] & is_volume) != 0, four_cc = (header.format.flags & has_four_cc) != 0;
   const bool extended = four_cc && header.format.four_cc == four_characters("DX10");
   if (four_cc && !extended) {
-    std::string name(4, '.');
-    for (size_t i = 0; i < 4; ++i)
-      if (const auto c = char(header.format.four_cc >> 8 * i & 0xff); c >= ' ' && c <= '~') name[i] = c;
-    refuse(file, "format '" + name + "' is none of " + texel_format_names());
+    const auto name = std::bit_cast<std::array<char, 4>>(header.format.four_cc);
+    refuse(file, "format '" + printable({name.data(), name.size()}) + "' is none of " + texel_format_names());
   }
   const TexelFormat format = extended ? extended_format(file, header, volume) : masked_format(file, header.format);
   // Writers leave out flags, and some a count of 1: only the numbers themselves are to be relied on.

@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "file.h"
+#include "printable.h"
 
 namespace voxref {
 
@@ -55,7 +56,8 @@ ElementType parse_type(std::string_view text, const std::string& file) {
   for (const ElementType type : {ElementType::float32, ElementType::float16, ElementType::uint8})
     if (descr == descr_of(type)) return type;
   if (descr == "'<u1'") return ElementType::uint8;
-  throw Error(file, "header", "type " + descr + " is none of float32 ('<f4'), float16 ('<f2') and uint8 ('|u1')");
+  throw Error(file, "header",
+              "type " + printable(descr) + " is none of float32 ('<f4'), float16 ('<f2') and uint8 ('|u1')");
 }
 
 std::vector<size_t> parse_shape(std::string_view text, const std::string& file) {
@@ -69,7 +71,7 @@ std::vector<size_t> parse_shape(std::string_view text, const std::string& file) 
     at = end + 1;
     if (digits.empty() && at > close) break;  // the comma after the last side
     const bool number = !digits.empty() && digits.size() <= 9 && digits.find_first_not_of("0123456789") == digits.npos;
-    if (!number || std::stoul(digits) == 0) throw Error(file, "header", "shape has a side '" + digits + "'");
+    if (!number || std::stoul(digits) == 0) throw Error(file, "header", "shape has a side '" + printable(digits) + "'");
     shape.push_back(std::stoul(digits));
   }
   if (shape.size() < least_sides || shape.size() > most_sides)
@@ -112,7 +114,7 @@ ArrayLayout npy_layout(BinaryFile& file, ArrayMeaning meaning) {
   if (file.size() >= prefix.size()) file.read(0, std::as_writable_bytes(std::span(prefix)));
   if (!std::string_view(prefix.data(), prefix.size()).starts_with(magic))
     throw Error(name, "header", "is not that of a NumPy array");
-  const int version = prefix[magic.size()];
+  const auto version = static_cast<unsigned char>(prefix[magic.size()]);
   if (version < 1 || version > 3) throw Error(name, "header", "has version " + std::to_string(version));
   uint32_t length = 0;
   const size_t length_bytes = version == 1 ? 2 : 4;
