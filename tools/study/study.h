@@ -58,6 +58,7 @@ std::span<const Study> studies();
 
 StudyResult run_pareto(const StudyRequest& request);
 StudyResult run_ladder(const StudyRequest& request);
+StudyResult run_thesis(const StudyRequest& request);
 StudyResult run_stability(const StudyRequest& request);
 
 }  // namespace voxref
