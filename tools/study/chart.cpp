@@ -183,7 +183,7 @@ std::string gnuplot_script(const Chart& chart, const std::string& terminal, cons
                                                      [](const Series& series) { return !series.title.empty(); }));
   const int rows = (listed + 1) / 2;  // of the legend, which has two columns
   text += listed > 0 ? fmt::format("set key outside below maxrows {}\nset bmargin {}\n", rows,
-                                   4 + rows + category_style(chart.x.categories).lines)
+                                   5 + rows + category_style(chart.x.categories).lines)
                      : "set key off\n";
   text += axis_lines(fitted(chart.x, chart, [](const ChartPoint& p) { return p.x; }), 'x');
   text += axis_lines(fitted(chart.y, chart, [](const ChartPoint& p) { return p.y; }), 'y');

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 
 #include "scene/surface.h"
 
@@ -14,34 +14,35 @@ namespace {
 
 enum PlanAxis : size_t { resolution_axis, bounce_axis, cone_axis, step_axis, storage_axis };
 
-PlanPoint finest(const PlanSpace& space) {
+/// Every setting of one resolution.
+std::vector<PlanPoint> points_at(const PlanSpace& space, size_t resolution) {
+  std::vector<PlanPoint> points;
   PlanPoint point{};
-  for (size_t a = 0; a < PlanSpace::axes; ++a) point[a] = space.size(a) - 1;
-  return point;
+  point[resolution_axis] = resolution;
+  const auto each = [&](auto&& self, size_t axis) -> void {
+    if (axis == PlanSpace::axes) return points.push_back(point);
+    for (point[axis] = 0; point[axis] < space.size(axis); ++point[axis]) self(self, axis + 1);
+  };
+  each(each, bounce_axis);
+  return points;
 }
 
 /// The search's state: what has been measured, each setting once.
 class Search {
  public:
   Search(const PlanSpace& space, double budget, const PlanOracle& oracle)
-      : space_(space), budget_(budget), oracle_(oracle) {
-    for (size_t a = 0; a < PlanSpace::axes; ++a) added_[a].assign(space.size(a), infinite);
-    bounce_errors_.assign(space.size(bounce_axis), infinite);
-  }
+      : space_(space), budget_(budget), oracle_(oracle) {}
 
   PlanSearch run() {
-    if (const std::optional<size_t> reached = climb()) {
-      probe(*reached);
-      choose(*reached);
-    }
+    for (const PlanPoint& point : points_at(space_, 0)) coarsest_[point] = measure(point).error;
+    climb();
+    choose();
     for (const PlanTrial& trial : result_.trials)
       if (!result_.closest || trial.error < result_.closest->error) result_.closest = trial;
     return result_;
   }
 
  private:
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
-
   PlanTrial measure(const PlanPoint& point) {
     for (const PlanTrial& trial : result_.trials)
       if (trial.point == point) return trial;
@@ -49,67 +50,36 @@ class Search {
     return result_.trials.back();
   }
 
-  /// Step 1. @return the index of the resolution that reaches the budget
-  std::optional<size_t> climb() {
-    PlanPoint point = finest(space_);
-    double before = infinite;
-    for (size_t r = 0; r < space_.size(resolution_axis); ++r) {
-      point[resolution_axis] = r;
-      double least = infinite;
-      for (size_t b = 0; b < space_.size(bounce_axis); ++b) {
-        point[bounce_axis] = b;
-        bounce_errors_[b] = measure(point).error;
-        if (bounce_errors_[b] < least) best_bounces_ = b;
-        least = std::min(least, bounce_errors_[b]);
-      }
-      if (least <= budget_) return r;
-      const double gain = std::max(2.0 * (before - least), 0.1 * least);
-      const auto further = static_cast<double>(space_.size(resolution_axis) - 1 - r);
-      if (before < infinite && least - gain * further > budget_) return std::nullopt;
-      before = least;
-    }
-    return std::nullopt;
-  }
-
   /// Step 2.
-  void probe(size_t resolution) {
-    const double least = bounce_errors_[best_bounces_];
-    for (size_t a = cone_axis; a < PlanSpace::axes; ++a) {
-      PlanPoint point = finest(space_);
-      point[resolution_axis] = resolution;
-      point[bounce_axis] = best_bounces_;
-      added_[a].back() = 0.0;
-      for (size_t i = space_.size(a) - 1; i-- > 0;) {
-        point[a] = i;
-        const double error = measure(point).error;
-        const double added = std::max(0.0, error * error - least * least);
-        if (added > budget_ * budget_) break;
-        added_[a][i] = added;
-      }
+  void climb() {
+    const auto best = std::min_element(coarsest_.begin(), coarsest_.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    PlanPoint point = best->first;
+    gains_ = {0.0};
+    double before = best->second;
+    bool reached = before <= budget_;
+    for (size_t r = 1; r < space_.size(resolution_axis); ++r) {
+      point[resolution_axis] = r;
+      const double error = measure(point).error;
+      gains_.push_back(best->second * best->second - error * error);
+      if (reached) return;
+      reached = error <= budget_;
+      const auto further = static_cast<double>(space_.size(resolution_axis) - 1 - r);
+      if (!reached && error * std::pow(error / before, further) > slack * budget_) return;
+      before = error;
     }
-  }
-
-  double predicted(const PlanPoint& point) const {
-    double square = bounce_errors_[point[bounce_axis]] * bounce_errors_[point[bounce_axis]];
-    for (size_t a = cone_axis; a < PlanSpace::axes; ++a) square += added_[a][point[a]];
-    return std::sqrt(square);
   }
 
   /// Step 3.
-  void choose(size_t resolution) {
-    constexpr double slack = 1.1;
+  void choose() {
     std::vector<PlanPoint> left;
-    PlanPoint point{};
-    const auto each = [&](auto&& self, size_t axis) -> void {
-      if (axis == PlanSpace::axes) {
-        if (predicted(point) <= slack * budget_) left.push_back(point);
-        return;
+    for (size_t r = 0; r < gains_.size(); ++r)
+      for (PlanPoint point : points_at(space_, r)) {
+        PlanPoint coarse = point;
+        coarse[resolution_axis] = 0;
+        const double error = coarsest_.at(coarse);
+        if (error * error - gains_[r] <= slack * slack * budget_ * budget_) left.push_back(point);
       }
-      for (point[axis] = 0; point[axis] < space_.size(axis); ++point[axis]) self(self, axis + 1);
-    };
-    const size_t last = std::min(resolution + 1, space_.size(resolution_axis) - 1);
-    for (point[resolution_axis] = resolution; point[resolution_axis] <= last; ++point[resolution_axis])
-      each(each, bounce_axis);
     std::stable_sort(left.begin(), left.end(),
                      [&](const PlanPoint& a, const PlanPoint& b) { return oracle_.cost(a) < oracle_.cost(b); });
     for (const PlanPoint& candidate : left) {
@@ -120,12 +90,13 @@ class Search {
     }
   }
 
+  static constexpr double slack = 1.1;  // of predicted errors over the budget
+
   const PlanSpace& space_;
   double budget_;
   const PlanOracle& oracle_;
-  std::vector<double> bounce_errors_;  // at the resolution that was looked at last, the other axes at their finest
-  size_t best_bounces_ = 0;
-  std::array<std::vector<double>, PlanSpace::axes> added_;  // to the square of the error, per axis and value
+  std::map<PlanPoint, double> coarsest_;
+  std::vector<double> gains_;  // per resolution, as far as the climb went
   PlanSearch result_;
 };
 

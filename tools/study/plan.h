@@ -46,18 +46,18 @@ struct PlanSearch {
   std::vector<PlanTrial> trials;     ///< in the order in which they were measured
 };
 
-/// Finds the cheapest setting whose error is at most `budget`, in three steps that leave most of the space untouched.
-/// Cones, step and storage err less as they are finer; bounces need not, since light that is missing may make up for
-/// light that is too much.
+/// Finds the cheapest setting whose error is at most `budget` without measuring most of the space. Errors make up for
+/// one another (bytes clamp light that wide cones have too much of; a bounce that is missing does too), so that no
+/// parameter may be judged alone. But a volume of half the resolution costs a quarter and shows the same play:
 ///
-/// 1. With cones, step and storage at their finest, the resolution climbs until the budget is reached with some number
-///    of bounces; it is given up where twice the last gain, or a tenth of the error, had again by every further step,
-///    would not do.
-/// 2. At that resolution and with the bounces that err least, cones, step and storage alone are made coarser, until
-/// what
-///    one adds to the error, e_a^2 = e^2 - e_finest^2, is by itself beyond the budget; coarser values are dropped.
-/// 3. The settings that are left, at that resolution and the next, are measured cheapest first, those left out whose
-///    predicted error sqrt(e_bounces^2 + sum e_a^2) is beyond the budget by more than a tenth. The first within is it.
+/// 1. At the coarsest resolution every setting is measured: e_0.
+/// 2. The best of them is measured at finer and finer resolutions: what its squared error loses, g_r = e_0^2 - e_r^2,
+/// is
+///    their gain. This ends one resolution after the budget is reached, or where the ratio of the last two errors, had
+///    again by each further one, would not do.
+/// 3. Those of all settings whose predicted error sqrt(e_0^2 - g_r) is at most 1.1 times the budget are measured,
+/// cheapest
+///    first. The first that is within is it.
 PlanSearch search_plan(const PlanSpace& space, double budget, const PlanOracle& oracle);
 
 /// Takes away what the scene cannot use, and says so in one line each: the bounces where no surface sees another, and

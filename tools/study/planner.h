@@ -6,7 +6,7 @@ namespace voxref {
 
 struct PlanOptions {
   double budget = 0.2;      ///< the most that rel_error may be
-  int width = 64;           ///< pixels of the images that are measured
+  int width = 48;           ///< pixels of the images that are measured
   int reference_spp = 512;  ///< of the path-traced image that they are held against
   PlanSpace space;
   PlanSearch (*search)(const PlanSpace&, double budget, const PlanOracle&) = search_plan;
