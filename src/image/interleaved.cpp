@@ -31,6 +31,7 @@ void add_interleaved(Image& image, std::span<const float> pixels, std::span<cons
     image.add(names[c]);
   }
   std::vector<std::span<float>> planes;
+  planes.reserve(sources.size());
   for (const size_t c : sources) planes.push_back(image.channel(names[c]));
   parallel_for(image.pixel_count(), grain, [&](size_t begin, size_t end) {
     for (size_t k = 0; k < planes.size(); ++k)

@@ -52,7 +52,7 @@ Grid read_grid(const JsonMembers& members) {
 
 /// The file of an entry: inside the folder, so that a folder from elsewhere cannot name what else is on this machine.
 std::string read_file_name(const JsonMembers& members, const std::string& name) {
-  const auto text = members.get<std::string>("file", name + ".npy");
+  auto text = members.get<std::string>("file", name + ".npy");
   const std::filesystem::path file(text);
   const bool leaves = file.is_absolute() || std::ranges::find(file, "..") != file.end();
   if (leaves || !file.has_filename() || text.find('\0') != text.npos) members.fail("file", "is no file of this folder");
