@@ -63,10 +63,11 @@ CategoryStyle category_style(const std::vector<std::string>& categories) {
 std::string fine_tics(const Axis& axis, char name) {
   if (!axis.min || !axis.max || *axis.max / *axis.min > 300.0) return "";
   std::string list;
-  for (double decade = std::pow(10.0, std::floor(std::log10(*axis.min))); decade <= *axis.max; decade *= 10.0)
+  const auto exponent = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
+  for (int e = exponent(*axis.min); e <= exponent(*axis.max); ++e)
     for (const double digit : {1.0, 2.0, 5.0})
-      if (digit * decade >= *axis.min && digit * decade <= *axis.max)
-        list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", digit * decade);
+      if (const double tic = digit * std::pow(10.0, e); tic >= *axis.min && tic <= *axis.max)
+        list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", tic);
   return list.empty() ? "" : fmt::format("set {}tics ({})\n", name, list);
 }
 
