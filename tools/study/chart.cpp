@@ -55,7 +55,7 @@ CategoryStyle category_style(const std::vector<std::string>& categories) {
   for (const std::string& name : categories) longest = std::max(longest, name.size());
   const auto length = static_cast<double>(longest);
   if (categories.size() * longest <= most_letters) return {};
-  if (categories.size() <= many) return {"rotate by 30 right ", static_cast<int>(0.3 * length)};
+  if (categories.size() <= many) return {"rotate by 30 right ", static_cast<int>(0.2 * length)};
   return {"rotate by 90 right ", static_cast<int>(0.48 * length)};
 }
 
