@@ -1,6 +1,7 @@
 #include "reference/integrator.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -35,23 +36,19 @@ float power_heuristic(float pdf, float other) {
 }  // namespace
 
 void Wave::begin(std::span<const PathStart> starts, size_t bounces_each) {
+  assert(starts.size() <= most_paths);
   starts_ = starts;
   depth_ = 0;
   samples_.assign(starts.size(), {});
   bounces_each_ = bounces_each;
   bounces_.assign(starts.size() * bounces_each, glm::vec3(0.0f));
-  next_paths_.clear();
-  paths_.assign(starts.size(), {});
-  for (uint32_t i = 0; i < starts.size(); ++i) paths_[i].start = i;
-  for (auto* list : {&rays_, &next_rays_, &shadow_rays_}) list->clear();
-  pending_.clear();
-  draw();
+  vertices_.clear();
 }
 
-/// All random numbers of the paths at hand, whether they come to need them or not: made together, they cost little.
+/// All random numbers of the vertices, whether they come to be needed or not: made together, they cost little.
 void Wave::draw() {
   samplers_.clear();
-  for (const Path& path : paths_) samplers_.add(starts_[path.start].sampler);
+  for (size_t i = 0; i < vertices_.size(); ++i) samplers_.add(starts_[start_[i]].sampler);
   const auto dimension = [this](Dimension set) {
     return 1 + static_cast<uint32_t>(depth_) * dimensions_per_vertex + set;
   };
@@ -73,11 +70,43 @@ void Wave::add(uint32_t start, int times, const glm::vec3& radiance) {
     bounces_[start * bounces_each_ + bounce] += radiance;
 }
 
-/// Light that reaches the camera if nothing blocks the shadow ray that is to follow.
-void Wave::pend(uint32_t start, const glm::vec3& radiance) {
-  Pending& pending = pending_.emplace_back();
-  pending.start = start;
-  pending.radiance = radiance;
+/// Its light reaches the camera if nothing blocks the ray.
+void Wave::pend(size_t vertex, const Ray& shadow_ray) {
+  pending_[pending_count_] = {start_[vertex], radiance_[vertex]};
+  shadow_rays_[pending_count_] = shadow_ray;
+  ++pending_count_;
+}
+
+/// What the sampled lights bring, shadows left out. @param against_bsdf the BSDF's samples may find the same light
+VOXREF_WIDEST void Wave::weigh_by_light(bool against_bsdf) {
+  const auto weigh = [&](bool weighs) {
+    const size_t count = vertices_.size();
+#pragma GCC ivdep
+    for (size_t i = 0; i < count; ++i) {
+      const float weight = weighs ? power_heuristic(light_.pdf[i], pdf_[i]) / light_.pdf[i] : 1.0f;
+      const glm::vec3 arriving = scattered_[i] * light_.light[i];
+      const bool some = (arriving.x != 0.0f) | (arriving.y != 0.0f) | (arriving.z != 0.0f);
+      radiance_.set(i, select(some, throughput_[i] * arriving * weight, glm::vec3(0.0f)));
+    }
+  };
+  against_bsdf ? weigh(true) : weigh(false);
+}
+
+/// Throughput beyond the vertices, after roulette. From the throughput alone, never from the light: twice the light
+/// then gives exactly twice the image.
+VOXREF_WIDEST void Wave::weigh_by_bsdf(float least_survival, float most_survival) {
+  const size_t count = vertices_.size();
+  const uint32_t* numbers = roulette_.x.data();
+#pragma GCC ivdep
+  for (size_t i = 0; i < count; ++i) {
+    const glm::vec3 weight = weight_[i];
+    const glm::vec3 throughput = throughput_[i] * weight;
+    const float kept = largest(throughput) / least_throughput;
+    const float survival = std::min(std::max(kept, least_survival), most_survival);
+    const bool some = (weight.x != 0.0f) | (weight.y != 0.0f) | (weight.z != 0.0f);
+    goes_on_[i] = some & !(unit_float(numbers[i]) >= survival) ? 1u : 0u;
+    throughput_.set(i, throughput / survival);
+  }
 }
 
 Integrator::Integrator(const Scene& scene, const Surfaces& surfaces, const Caster& caster, const glm::vec3& background,
@@ -93,69 +122,49 @@ Integrator::Integrator(const Scene& scene, const Surfaces& surfaces, const Caste
 
 void Integrator::trace(std::span<const PathStart> starts, Wave& wave, PathCounts& counts) const {
   wave.begin(starts, bounces_);
-  for (uint32_t i = 0; i < starts.size(); ++i) {
-    if (starts[i].seen)
-      arrive(wave, i, *starts[i].seen);
+  Wave::Path path;
+  for (path.start = 0; path.start < starts.size(); ++path.start) {
+    if (starts[path.start].seen)
+      arrive(wave, path, *starts[path.start].seen);
     else
-      wave.add(i, 0, background_);
+      wave.add(path.start, 0, background_);
   }
-  settle_shadows(wave, counts);
-  while (!wave.next_paths_.empty()) {
+  scatter(wave, counts);
+  while (wave.path_count_ > 0) {
     follow(wave, counts);
-    settle_shadows(wave, counts);
+    scatter(wave, counts);
   }
   for (const PathSample& sample : wave.samples_) counts.nonfinite += sample.nonfinite;
 }
 
 /// Casts the rays of all paths that go on, and takes them to the surfaces that these find.
 void Integrator::follow(Wave& wave, PathCounts& counts) const {
-  std::swap(wave.paths_, wave.next_paths_);
-  std::swap(wave.rays_, wave.next_rays_);
-  wave.next_paths_.clear();
-  wave.next_rays_.clear();
   ++wave.depth_;
-  wave.hits_.resize(wave.rays_.size());
-  caster_.closest(wave.rays_, wave.hits_);
-  counts.closest_rays += wave.rays_.size();
-  surfaces_.prefetch(wave.hits_);
-  wave.draw();
-  for (size_t i = 0; i < wave.paths_.size(); ++i) {
+  wave.vertices_.clear();
+  const std::span<Hit> hits = std::span(wave.hits_).first(wave.path_count_);
+  caster_.closest(std::span(wave.rays_).first(wave.path_count_), hits);
+  counts.closest_rays += wave.path_count_;
+  surfaces_.prefetch(hits);
+  for (size_t i = 0; i < wave.path_count_; ++i) {
+    const Wave::Path& path = wave.paths_[i];
     if (wave.hits_[i])
-      arrive(wave, i, PathVertex(surfaces_, wave.hits_[i], wave.rays_[i]));
+      arrive(wave, path, PathVertex(surfaces_, wave.hits_[i], wave.rays_[i]));
     else
-      wave.add(wave.paths_[i].start, wave.depth_, wave.paths_[i].throughput * background_);
+      wave.add(path.start, wave.depth_, path.throughput * background_);
   }
 }
 
-/// Light sampled at the present vertices arrives where nothing blocks it.
-void Integrator::settle_shadows(Wave& wave, PathCounts& counts) const {
-  wave.blocked_.resize(wave.shadow_rays_.size());
-  caster_.occluded(wave.shadow_rays_, wave.blocked_);
-  counts.occlusion_rays += wave.shadow_rays_.size();
-  for (size_t i = 0; i < wave.pending_.size(); ++i)
-    if (!wave.blocked_[i]) wave.add(wave.pending_[i].start, wave.depth_ + 1, wave.pending_[i].radiance);
-  wave.shadow_rays_.clear();
-  wave.pending_.clear();
-}
-
-void Integrator::arrive(Wave& wave, size_t i, const PathVertex& vertex) const {
-  const Wave::Path& path = wave.paths_[i];
+void Integrator::arrive(Wave& wave, const Wave::Path& path, const PathVertex& vertex) const {
   const SurfacePoint& surface = vertex.surface;
   if (surface.emission != glm::vec3(0.0f)) wave.add(path.start, wave.depth_, path.throughput * emitted(path, vertex));
   if (wave.depth_ >= max_depth_ || surface.reflectance.black()) return;
-  if (!compensates_) return scatter_light(wave, i, vertex);
-  PathVertex compensated = vertex;
-  compensate_energy(compensated.surface.reflectance, glm::dot(surface.shading_normal, vertex.to_previous));
-  scatter_light(wave, i, compensated);
-}
-
-/// Light that the vertex scatters: straight from the lights, and what the path goes on to find.
-void Integrator::scatter_light(Wave& wave, size_t i, const PathVertex& vertex) const {
-  const Bsdf bsdf(vertex.surface, vertex.to_previous);
-  if (lights_.punctual_count() > 0) add_punctual(wave, i, vertex, bsdf);
-  if (lights_.has_emitters()) add_emitters(wave, i, vertex, bsdf);
-  // The last ray can only find light itself.
-  if (wave.depth_ + 1 < max_depth_ || light_can_be_hit_) scatter(wave, i, vertex, bsdf);
+  const size_t i = wave.vertices_.size();
+  wave.start_[i] = path.start;
+  wave.throughput_.set(i, path.throughput);
+  if (!compensates_) return wave.vertices_.add(surface, vertex.to_previous);
+  SurfacePoint compensated = surface;
+  compensate_energy(compensated.reflectance, glm::dot(surface.shading_normal, vertex.to_previous));
+  wave.vertices_.add(compensated, vertex.to_previous);
 }
 
 /// Emission of the vertex, weighed against the chance that the vertex before had sampled it as a light.
@@ -166,66 +175,77 @@ glm::vec3 Integrator::emitted(const Wave::Path& path, const PathVertex& vertex) 
   return power_heuristic(path.bsdf_pdf, light_pdf) * vertex.surface.emission;
 }
 
-void Integrator::add_punctual(Wave& wave, size_t i, const PathVertex& vertex, const Bsdf& bsdf) const {
-  const Wave::Path& path = wave.paths_[i];
-  const SurfacePoint& surface = vertex.surface;
-  const std::optional<PunctualSample> light =
-      lights_.sample_punctual({surface.position, surface.shading_normal}, wave.choose_punctual_.x[i]);
-  if (!light) return;
-  const glm::vec3 radiance = bsdf.value(light->to_light) * light->irradiance;
-  if (radiance == glm::vec3(0.0f)) return;
-  wave.pend(path.start, path.throughput * radiance);
-  Ray& ray = wave.shadow_rays_.emplace_back();
-  ray.origin = surface.position + caster_.surface_offset() * surface.geometric_normal;
-  ray.direction = light->to_light;
-  ray.tmax = light->distance;
-}
-
-void Integrator::add_emitters(Wave& wave, size_t i, const PathVertex& vertex, const Bsdf& bsdf) const {
-  const Wave::Path& path = wave.paths_[i];
-  const SurfacePoint& surface = vertex.surface;
-  const std::optional<EmitterSample> light =
-      lights_.sample_emitter({surface.position, surface.shading_normal}, wave.point_on_emitter_.bits(i));
-  if (!light) return;
-  const glm::vec3 radiance = bsdf.value(light->to_light) * light->radiance;
-  if (radiance == glm::vec3(0.0f)) return;
-  const float weight = power_heuristic(light->pdf, bsdf.pdf(light->to_light));
-  wave.pend(path.start, path.throughput * radiance * (weight / light->pdf));
-  const float offset = caster_.surface_offset();
-  Ray& ray = wave.shadow_rays_.emplace_back();
-  ray.origin = surface.position + offset * surface.geometric_normal;
-  ray.direction = light->position + offset * light->normal - ray.origin;
-  ray.tmax = 1.0f;
-}
-
-/// Sends the path on to its next vertex, unless it ends here.
-void Integrator::scatter(Wave& wave, size_t i, const PathVertex& vertex, const Bsdf& bsdf) const {
-  const Wave::Path& path = wave.paths_[i];
-  const std::optional<BsdfSample> next =
-      bsdf.sample(unit_float(wave.choose_lobe_.x[i]), unit_floats(wave.bsdf_direction_.bits(i)));
-  if (!next) return;
-  glm::vec3 throughput = path.throughput * next->weight;
-  if (!finite(throughput)) {
-    ++wave.samples_[path.start].nonfinite;
-    return;
+/// Light that the vertices scatter: straight from the lights, and what the paths go on to find.
+void Integrator::scatter(Wave& wave, PathCounts& counts) const {
+  wave.draw();
+  if (lights_.punctual_count() > 0) {
+    add_punctual(wave);
+    settle_shadows(wave, counts);
   }
-  // From the throughput alone, never from the light: twice the light then gives exactly twice the image.
-  if (wave.depth_ > 0) {
-    const float most = wave.depth_ < long_path ? 1.0f : most_survival_of_long;
-    const float survival = std::min(largest(throughput) / least_throughput, most);
-    if (survival < 1.0f) {
-      if (unit_float(wave.roulette_.x[i]) >= survival) return;
-      throughput /= survival;
+  if (lights_.has_emitters()) {
+    add_emitters(wave);
+    settle_shadows(wave, counts);
+  }
+  wave.path_count_ = 0;
+  // The last ray can only find light itself.
+  if (wave.depth_ + 1 < max_depth_ || light_can_be_hit_) go_on(wave);
+}
+
+void Integrator::add_punctual(Wave& wave) const {
+  const Vertices& vertices = wave.vertices_;
+  lights_.sample_punctual(vertices, wave.choose_punctual_.x.data(), wave.light_);
+  vertices.evaluate(wave.light_.to_light, wave.scattered_, wave.pdf_);
+  wave.weigh_by_light(false);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    if (wave.radiance_[i] == glm::vec3(0.0f)) continue;
+    wave.pend(i, {leave(vertices, i), wave.light_.to_light[i], 0.0f, wave.light_.distance[i]});
+  }
+}
+
+void Integrator::add_emitters(Wave& wave) const {
+  const Vertices& vertices = wave.vertices_;
+  lights_.sample_emitter(vertices, wave.point_on_emitter_.x.data(), wave.point_on_emitter_.y.data(), wave.light_);
+  vertices.evaluate(wave.light_.to_light, wave.scattered_, wave.pdf_);
+  wave.weigh_by_light(true);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    if (wave.radiance_[i] == glm::vec3(0.0f)) continue;
+    const glm::vec3 target = wave.light_.position[i] + caster_.surface_offset() * wave.light_.normal[i];
+    wave.pend(i, Caster::segment(leave(vertices, i), target));
+  }
+}
+
+/// Light sampled at the vertices arrives where nothing blocks it.
+void Integrator::settle_shadows(Wave& wave, PathCounts& counts) const {
+  caster_.occluded(std::span(wave.shadow_rays_).first(wave.pending_count_),
+                   std::span(wave.blocked_).first(wave.pending_count_));
+  counts.occlusion_rays += wave.pending_count_;
+  for (size_t i = 0; i < wave.pending_count_; ++i)
+    if (!wave.blocked_[i]) wave.add(wave.pending_[i].start, wave.depth_ + 1, wave.pending_[i].radiance);
+  wave.pending_count_ = 0;
+}
+
+/// Sends the paths on to their next vertices, unless they end here.
+void Integrator::go_on(Wave& wave) const {
+  const Vertices& vertices = wave.vertices_;
+  vertices.sample(wave.choose_lobe_.x.data(), wave.bsdf_direction_.x.data(), wave.bsdf_direction_.y.data(), wave.next_,
+                  wave.weight_, wave.pdf_);
+  wave.weigh_by_bsdf(wave.depth_ == 0 ? 1.0f : 0.0f, wave.depth_ < long_path ? 1.0f : most_survival_of_long);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    if (!wave.goes_on_[i]) continue;
+    const glm::vec3 throughput = wave.throughput_[i];
+    if (!finite(throughput)) {
+      ++wave.samples_[wave.start_[i]].nonfinite;
+      continue;
     }
+    wave.paths_[wave.path_count_] = {wave.start_[i], throughput, wave.pdf_[i], vertices.receiver(i)};
+    wave.rays_[wave.path_count_] = {leave(vertices, i), wave.next_[i]};
+    ++wave.path_count_;
   }
-  Wave::Path& onwards = wave.next_paths_.emplace_back();
-  onwards.start = path.start;
-  onwards.throughput = throughput;
-  onwards.bsdf_pdf = next->pdf;
-  onwards.previous = {vertex.surface.position, vertex.surface.shading_normal};
-  Ray& ray = wave.next_rays_.emplace_back();
-  ray.origin = vertex.surface.position + caster_.surface_offset() * vertex.surface.geometric_normal;
-  ray.direction = next->in;
+}
+
+/// Where a ray from the vertex begins.
+glm::vec3 Integrator::leave(const Vertices& vertices, size_t i) const {
+  return vertices.positions()[i] + caster_.surface_offset() * vertices.geometric_normals()[i];
 }
 
 }  // namespace voxref

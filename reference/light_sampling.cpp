@@ -89,13 +89,20 @@ void LightSampler::add_emitters() {
     // What is never drawn is still found by the BSDF's rays, which then count in full.
     if (!(intensity > 0.0f)) continue;
     emitter.normal = normal / twice_area;
+    emission_varies_ = emission_varies_ || emitter.varies;
     emitters_.push_back(emitter);
     Bounds box;
     for (int corner = 0; corner < 3; ++corner) box.add(scene_.positions[corners[corner]]);
     bounds.push_back({box, emitter.normal, emitter.double_sided ? pi : 0.0f, 0.5f * pi, intensity});
   }
   if (emitters_.empty()) return;
-  emitter_tree_ = LightTree(bounds);
+  if (few_emitters()) {
+    std::vector<float> intensities;
+    for (const LightBounds& emitter : bounds) intensities.push_back(emitter.intensity);
+    emitter_table_ = LightTable(intensities);
+  } else {
+    emitter_tree_ = LightTree(bounds);
+  }
   emitter_of_triangle_.assign(scene_.triangles.size(), Hit::none);
   for (uint32_t i = 0; i < emitters_.size(); ++i) emitter_of_triangle_[emitters_[i].triangle] = i;
 }
@@ -154,20 +161,13 @@ std::optional<PunctualSample> LightSampler::sample_many(const Receiver& receiver
 }
 
 std::optional<EmitterSample> LightSampler::sample_emitter(const Receiver& receiver, const glm::uvec2& bits) const {
-  const std::optional<LightTree::Choice> choice = emitter_tree_.choose(receiver, bits.x * 0x1p-32);
+  const std::optional<LightChoice> choice =
+      few_emitters() ? emitter_table_.choose(unit_float(bits.x)) : emitter_tree_.choose(receiver, bits.x * 0x1p-32);
   if (!choice) return std::nullopt;
   const Emitter& emitter = emitters_[choice->index];
   const glm::vec2 uv = uniform_triangle({choice->rest, unit_float(bits.y)});
-  EmitterSample sample;
-  sample.position = emitter.origin + uv.x * emitter.edge_u + uv.y * emitter.edge_v;
-  const glm::vec3 offset = sample.position - receiver.position;
-  const float distance = glm::length(offset);
-  sample.to_light = offset / distance;
-  const float cosine = -glm::dot(emitter.normal, sample.to_light);
-  if (!(cosine > 0.0f || (emitter.double_sided && cosine < 0.0f))) return std::nullopt;
-  sample.normal = cosine > 0.0f ? emitter.normal : -emitter.normal;
-  sample.pdf = choice->probability * distance * distance / (emitter.area * std::abs(cosine));
-  sample.radiance = emitter.emission;
+  EmitterSample sample = sample_point(emitter, choice->probability, uv, receiver.position);
+  if (sample.radiance == glm::vec3(0.0f)) return std::nullopt;
   if (emitter.varies) {
     const MaterialPoint material = materials_.point(emitter.triangle, uv);
     sample.radiance = material.opacity * material.emission;
@@ -182,7 +182,9 @@ float LightSampler::emitter_pdf(const Receiver& receiver, uint32_t triangle, con
   const Emitter& emitter = emitters_[index];
   const float cosine = std::abs(glm::dot(emitter.normal, direction));
   if (!(cosine > 0.0f)) return 0.0f;
-  return emitter_tree_.probability(index, receiver) * distance * distance / (emitter.area * cosine);
+  const float probability =
+      few_emitters() ? emitter_table_.probability(index) : emitter_tree_.probability(index, receiver);
+  return probability * distance * distance / (emitter.area * cosine);
 }
 
 }  // namespace voxref

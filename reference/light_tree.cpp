@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -15,8 +16,6 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr int bin_count = 12;
 // From here on groups are cut in halves, so that a way down fits in the bits of a trail: 2^24 lights more.
 constexpr int most_uneven_depth = 40;
-// Up to here estimates cost more time than they save noise: most often these are the two halves of a rectangle.
-constexpr size_t few_lights = 4;
 
 Bounds joined(Bounds a, const Bounds& b) {
   if (b.empty()) return a;
@@ -136,8 +135,19 @@ struct LightTree::Builder {
   }
 };
 
-LightTree::LightTree(std::span<const LightBounds> lights)
-    : by_intensity_(lights.size() <= few_lights), trails_(lights.size()), chosen_(lights.size()) {
+LightTable::LightTable(std::span<const float> intensities) {
+  assert(!intensities.empty() && intensities.size() <= most_lights);
+  double total = 0.0, before = 0.0;
+  for (const float intensity : intensities) total += intensity;
+  begin_.fill(std::numeric_limits<float>::infinity());  // of those that there are not
+  for (size_t i = 0; i < intensities.size(); ++i) {
+    probability_[i] = static_cast<float>(intensities[i] / total);
+    begin_[i] = static_cast<float>(before / total);
+    before += intensities[i];
+  }
+}
+
+LightTree::LightTree(std::span<const LightBounds> lights) : trails_(lights.size()), chosen_(lights.size()) {
   std::vector<uint32_t> group;
   for (uint32_t light = 0; light < lights.size(); ++light) {
     chosen_[light] = lights[light].intensity > 0.0f;
@@ -177,12 +187,12 @@ float LightTree::irradiance(const Receiver& receiver) const {
 
 float LightTree::first_share(uint32_t node, const Receiver& receiver) const {
   const Node &one = nodes_[node + 1], &other = nodes_[nodes_[node].next];
-  const float first = by_intensity_ ? one.intensity : irradiance(one, receiver);
-  const float second = by_intensity_ ? other.intensity : irradiance(other, receiver);
+  const float first = irradiance(one, receiver);
+  const float second = irradiance(other, receiver);
   return first + second > 0.0f ? first / (first + second) : -1.0f;
 }
 
-std::optional<LightTree::Choice> LightTree::choose(const Receiver& receiver, double u) const {
+std::optional<LightChoice> LightTree::choose(const Receiver& receiver, double u) const {
   if (nodes_.empty()) return std::nullopt;
   constexpr double below_one = 1.0 - 0x1p-53;
   uint32_t node = 0;
@@ -200,7 +210,7 @@ std::optional<LightTree::Choice> LightTree::choose(const Receiver& receiver, dou
       node = nodes_[node].next;
     }
   }
-  return Choice{nodes_[node].next, probability, std::min(static_cast<float>(u), 0x1.fffffep-1f)};
+  return LightChoice{nodes_[node].next, probability, std::min(static_cast<float>(u), 0x1.fffffep-1f)};
 }
 
 float LightTree::probability(uint32_t light, const Receiver& receiver) const {

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -25,6 +27,40 @@ struct LightBounds {
   float intensity = 0.0f;  ///< along the own axis, luminance: W/sr; summed over a group
 };
 
+struct LightChoice {
+  uint32_t index = 0;
+  float probability = 0.0f;  ///< of this index, in (0,1]
+  float rest = 0.0f;         ///< what chose is uniform again within its choice, and so serves once more: in [0,1)
+};
+
+/// Chooses among a few lights by intensity alone: there, estimates cost more time than they save noise. Most often
+/// these are the two halves of a rectangle. Without branches, see lanes.h.
+class LightTable {
+ public:
+  static constexpr size_t most_lights = 4;
+
+  LightTable() = default;
+  /// @param intensities at most most_lights, each above 0
+  explicit LightTable(std::span<const float> intensities);
+
+  /// @param u uniform in [0,1)
+  LightChoice choose(float u) const {
+    uint32_t index = 0;
+    float begin = 0.0f, probability = probability_[0];
+    for (uint32_t light = 1; light < most_lights; ++light) {
+      const bool beyond = u >= begin_[light];
+      index = beyond ? light : index;
+      begin = beyond ? begin_[light] : begin;
+      probability = beyond ? probability_[light] : probability;
+    }
+    return {index, probability, std::min((u - begin) / probability, 0x1.fffffep-1f)};
+  }
+  float probability(uint32_t light) const { return probability_[light]; }
+
+ private:
+  std::array<float, most_lights> begin_{}, probability_{};  // of each light's part of [0,1)
+};
+
 /// Chooses among many lights about in proportion to what each would give a receiver, shadows left out: a binary tree
 /// of groups, walked down by estimates from their bounds. After Conty Estevez and Kulla 2018, "Importance Sampling of
 /// Many Lights with Adaptive Tree Splitting", without the splitting: one light each time.
@@ -32,21 +68,15 @@ struct LightBounds {
 /// Against a choice by power alone, path traced rooms: 20,000 small emissive triangles, a third of the variance at 1.9
 /// times the time; 300 point lights, a tenth of the variance at 1.3 times the time.
 ///
-/// A few lights are chosen by intensity alone. A light that gives a receiver anything is chosen with a probability
-/// above 0.
+/// A light that gives a receiver anything is chosen with a probability above 0.
 class LightTree {
  public:
   LightTree() = default;
   /// @param lights of finite intensity; those of none are never chosen
   explicit LightTree(std::span<const LightBounds> lights);
 
-  struct Choice {
-    uint32_t index = 0;
-    float probability = 0.0f;  ///< of this index, in (0,1]
-    float rest = 0.0f;         ///< what chose is uniform again within its choice, and so serves once more: in [0,1)
-  };
   /// Nothing where it is certain that no light reaches the receiver. @param u uniform in [0,1)
-  std::optional<Choice> choose(const Receiver& receiver, double u) const;
+  std::optional<LightChoice> choose(const Receiver& receiver, double u) const;
   /// Probability with which choose() finds a light.
   float probability(uint32_t light, const Receiver& receiver) const;
   /// Estimate of the irradiance that all lights together give, W/m^2 of luminance.
@@ -71,7 +101,6 @@ class LightTree {
   float first_share(uint32_t node, const Receiver& receiver) const;
 
   std::vector<Node> nodes_;
-  bool by_intensity_ = false;
   std::vector<uint64_t> trails_;  // per light: bit k is set where the way from the root turns to the second child
   std::vector<bool> chosen_;      // per light: whether it is in the tree
 };

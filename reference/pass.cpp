@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <numbers>
 
 #include "parallel.h"
@@ -11,10 +12,6 @@
 namespace voxref {
 
 namespace {
-
-/// Paths that are traced together: enough to fill packets to the last bounce, few enough for the second-level cache.
-/// Not critical: on the Cornell box 128, 256 and 1024 take the same time within what repeated runs differ by.
-constexpr size_t paths_at_once = 256;
 
 /// Sums over a pass's samples, in float64 because a pass may hold many.
 struct PixelSum {
@@ -54,6 +51,8 @@ struct PassRenderer::Room {
   std::vector<Hit> hits;
   std::vector<PathVertex> seen;
   std::vector<PathStart> starts;  // pixel by pixel, as many samples of each
+  SamplerBlock samplers;          // of the starts
+  std::vector<uint32_t> x, y;     // their places in the pixels, random bits
   std::vector<PathVertex> white;  // what is seen, were it white and Lambertian
   std::vector<PixelSum> sums;     // per pixel
   std::vector<glm::dvec3> extra;  // extra layers per pixel
@@ -133,11 +132,11 @@ bool PassRenderer::render_tile(size_t tile, const Progress& progress, PassCounts
     pixels.emplace_back(x, y);
     return true;
   });
-  Room room;
-  const size_t at_once = std::max<size_t>(1, paths_at_once / static_cast<size_t>(pass_.samples));
+  const auto room = std::make_unique_for_overwrite<Room>();
+  const size_t at_once = std::max<size_t>(1, Wave::most_paths / static_cast<size_t>(pass_.samples));
   for (size_t first = 0; first < pixels.size(); first += at_once) {
     if (progress.cancelled()) return false;
-    render_pixels(std::span(pixels).subspan(first, std::min(at_once, pixels.size() - first)), room, counts);
+    render_pixels(std::span(pixels).subspan(first, std::min(at_once, pixels.size() - first)), *room, counts);
   }
   return true;
 }
@@ -146,7 +145,7 @@ bool PassRenderer::render_tile(size_t tile, const Progress& progress, PassCounts
 void PassRenderer::render_pixels(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts) {
   room.sums.assign(pixels.size(), {});
   room.extra.assign(pixels.size() * extra_.count(), glm::dvec3(0.0));
-  const int most = std::max(1, static_cast<int>(paths_at_once / pixels.size()));
+  const int most = std::max(1, static_cast<int>(Wave::most_paths / pixels.size()));
   for (int first = 0; first < pass_.samples; first += most)
     render_samples(pixels, first, std::min(most, pass_.samples - first), room, counts);
   for (size_t i = 0; i < pixels.size(); ++i) {
@@ -179,23 +178,31 @@ void PassRenderer::render_samples(std::span<const glm::ivec2> pixels, int first,
   if (extra_.irradiance) add_irradiance(static_cast<size_t>(samples), room, counts.paths);
 }
 
-/// Casts the camera's rays. All samples of a pixel's centre see the same point.
+/// The camera's rays. All samples of a pixel's centre see the same point, and there is one ray for all of them.
+void PassRenderer::aim(std::span<const glm::ivec2> pixels, size_t samples, Room& room) const {
+  room.rays.clear();
+  if (view_.pixel == PixelSampling::center) {
+    for (const glm::ivec2& pixel : pixels) room.rays.push_back(rays_(glm::vec2(pixel) + 0.5f));
+    return;
+  }
+  room.samplers.clear();
+  for (const PathStart& start : room.starts) room.samplers.add(start.sampler);
+  room.samplers.bits_2d(0, room.x, room.y);
+  for (size_t i = 0; i < room.starts.size(); ++i)
+    room.rays.push_back(rays_(glm::vec2(pixels[i / samples]) + unit_floats({room.x[i], room.y[i]})));
+}
+
+/// Begins paths at what the camera sees.
 void PassRenderer::see(std::span<const glm::ivec2> pixels, int first, int samples, Room& room,
                        PathCounts& counts) const {
-  const bool center = view_.pixel == PixelSampling::center;
   room.starts.clear();
-  room.rays.clear();
   for (const glm::ivec2& pixel : pixels) {
     const uint64_t key = randomization_key(seed_, static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y),
                                            static_cast<uint32_t>(pass_.number));
     for (int sample = first; sample < first + samples; ++sample)
       room.starts.push_back({nullptr, Sampler(key, static_cast<uint32_t>(sample))});
-    if (center)
-      room.rays.push_back(rays_(glm::vec2(pixel) + 0.5f));
-    else
-      for (const PathStart& start : std::span(room.starts).last(static_cast<size_t>(samples)))
-        room.rays.push_back(rays_(glm::vec2(pixel) + start.sampler.get_2d(0)));
   }
+  aim(pixels, static_cast<size_t>(samples), room);
   room.hits.resize(room.rays.size());
   caster_.closest(room.rays, room.hits);
   counts.closest_rays += room.rays.size();

@@ -86,6 +86,7 @@ class PassRenderer {
   bool render_tile(size_t tile, const Progress& progress, PassCounts& counts);
   void render_pixels(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts);
   void render_samples(std::span<const glm::ivec2> pixels, int first, int samples, Room& room, PassCounts& counts) const;
+  void aim(std::span<const glm::ivec2> pixels, size_t samples, Room& room) const;
   void see(std::span<const glm::ivec2> pixels, int first, int samples, Room& room, PathCounts& counts) const;
   void add_irradiance(size_t samples, Room& room, PathCounts& counts) const;
   size_t index(const glm::ivec2& pixel) const {

@@ -1,12 +1,6 @@
 #include "reference/sampler_block.h"
 
-// The loops below are compiled once per instruction set, and the program picks the widest that the processor has when
-// it starts. Sanitizers are not ready yet when it does.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define VOXREF_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define VOXREF_WIDEST
-#endif
+#include "reference/lanes.h"
 
 namespace voxref {
 

@@ -39,10 +39,9 @@ inline glm::vec2 cos_sin_of_turns(float turns) {
   const float c = 1.0f + x2 * (-1.0f / 2 + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
   const float s = x * (1.0f + x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880)))));
   // A quarter turn takes (c, s) to (-s, c). Without branches, which would be guessed wrong half the time.
-  const float pair[2] = {c, s};
-  const int odd = quarter & 1;
-  return {static_cast<float>(1 - ((quarter + 1) & 2)) * pair[odd],
-          static_cast<float>(1 - (quarter & 2)) * pair[1 - odd]};
+  const bool odd = (quarter & 1) != 0;
+  return {static_cast<float>(1 - ((quarter + 1) & 2)) * (odd ? s : c),
+          static_cast<float>(1 - (quarter & 2)) * (odd ? c : s)};
 }
 
 /// Hemisphere about +z with density cos / pi per solid angle (Malley: a uniform disk, lifted).
@@ -65,7 +64,7 @@ inline glm::vec3 visible_ggx_normal(const glm::vec3& out, float alpha, const glm
   // Stretched by alpha the facets become a hemisphere, whose reflections of `out` fill a spherical cap evenly.
   const glm::vec3 stretched = glm::normalize(glm::vec3(alpha * out.x, alpha * out.y, out.z));
   const float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
-  const float radius = std::sqrt(std::clamp(1.0f - z * z, 0.0f, 1.0f));
+  const float radius = std::sqrt(std::max(1.0f - z * z, 0.0f));
   const glm::vec3 half = stretched + glm::vec3(radius * cos_sin_of_turns(u.x), z);
   return glm::normalize(glm::vec3(alpha * half.x, alpha * half.y, std::max(half.z, 0.0f)));
 }

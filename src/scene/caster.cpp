@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cmath>
@@ -114,6 +115,14 @@ struct Caster::Impl {
     device = nullptr;
   }
 
+  /// Whether packets shall be taken through the tree as one, which pays where the tree is so small that most of it
+  /// concerns all rays, and the rays so many that most packets lie in one octant. On the Cornell box, 36 triangles, a
+  /// sixth more rays per second for a thousand rays; on 70,000 triangles less than half as many.
+  bool coherent(size_t rays) const {
+    constexpr size_t few_triangles = 256, enough_rays = 256;
+    return opaque.triangles.size() + filtered.triangles.size() <= few_triangles && rays >= enough_rays;
+  }
+
   const Geometry& geometry(unsigned id) const { return id == 0 ? opaque : filtered; }
 
   /// Geometry ids follow the order of attachment; an empty geometry is attached too, so that ids stay 0 and 1.
@@ -168,10 +177,66 @@ struct alignas(64) PacketMask {
   }
 };
 
+/// Rays in the order in which they go into packets: by the signs of their directions' components. Rays that agree in
+/// these meet boxes in the same order. Of a thousand rays off diffuse surfaces a fifth more are cast per second so.
+class RayOrder {
+ public:
+  static constexpr size_t most_rays = 1024;
+
+  /// @param as_is the rays already stand in a good order
+  RayOrder(std::span<const Ray> rays, bool as_is) {
+    if (as_is) {
+      for (size_t i = 0; i < rays.size(); ++i) index_[i] = static_cast<uint16_t>(i);
+      return;
+    }
+    std::array<uint16_t, octants + 1> begin{};
+    for (size_t i = 0; i < rays.size(); ++i) {
+      octant_[i] = octant(rays[i].direction);
+      ++begin[octant_[i] + 1];
+    }
+    for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    for (size_t i = 0; i < rays.size(); ++i) index_[begin[octant_[i]]++] = static_cast<uint16_t>(i);
+  }
+  std::span<const uint16_t> packet(size_t first, size_t count) const { return std::span(index_).subspan(first, count); }
+
+ private:
+  static constexpr size_t octants = 8;
+  static uint8_t octant(const glm::vec3& direction) {
+    return static_cast<uint8_t>((direction.x < 0.0f) | (direction.y < 0.0f) << 1 | (direction.z < 0.0f) << 2);
+  }
+  std::array<uint16_t, most_rays> index_;
+  std::array<uint8_t, most_rays> octant_;
+};
+
+/// Such are a camera's; next to each other they go much the same way as they are.
+bool from_one_point(std::span<const Ray> rays) {
+  return std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) { return ray.origin == rays.front().origin; });
+}
+
+/// Calls cast(first, chosen) for every packet: its rays are rays[first + i] for each i of `chosen`.
+template <class Cast>
+void for_each_packet(std::span<const Ray> rays, bool as_is, const Cast& cast) {
+  for (size_t first = 0; first < rays.size(); first += RayOrder::most_rays) {
+    const size_t count = std::min(RayOrder::most_rays, rays.size() - first);
+    const RayOrder order(rays.subspan(first, count), as_is);
+    for (size_t i = 0; i < count; i += packet_size) cast(first, order.packet(i, std::min(packet_size, count - i)));
+  }
+}
+
+/// What is the same for all rays.
+void set_constants(RTCRay16& target) {
+  for (size_t i = 0; i < packet_size; ++i) {
+    target.time[i] = 0.0f;
+    target.mask[i] = ~0u;
+    target.id[i] = 0;
+    target.flags[i] = 0;
+  }
+}
+
 /// Fills a packet; where there are fewer rays the rest is left as it is.
-void set_rays(RTCRay16& target, std::span<const Ray> rays) {
-  for (size_t i = 0; i < rays.size(); ++i) {
-    const Ray& ray = rays[i];
+void set_rays(RTCRay16& target, std::span<const Ray> rays, std::span<const uint16_t> chosen) {
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    const Ray& ray = rays[chosen[i]];
     target.org_x[i] = ray.origin.x;
     target.org_y[i] = ray.origin.y;
     target.org_z[i] = ray.origin.z;
@@ -179,19 +244,25 @@ void set_rays(RTCRay16& target, std::span<const Ray> rays) {
     target.dir_x[i] = ray.direction.x;
     target.dir_y[i] = ray.direction.y;
     target.dir_z[i] = ray.direction.z;
-    target.time[i] = 0.0f;
     target.tfar[i] = ray.tmax;
-    target.mask[i] = ~0u;
-    target.id[i] = 0;
-    target.flags[i] = 0;
   }
 }
 
 #if RTC_VERSION_MAJOR >= 4
 void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
 void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
-void intersect(RTCScene scene, const PacketMask& mask, RTCRayHit16& rays) { rtcIntersect16(mask.valid, scene, &rays); }
-void occlude(RTCScene scene, const PacketMask& mask, RTCRay16& rays) { rtcOccluded16(mask.valid, scene, &rays); }
+void intersect(RTCScene scene, const PacketMask& mask, RTCRayHit16& rays, bool coherent) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect16(mask.valid, scene, &rays, &arguments);
+}
+void occlude(RTCScene scene, const PacketMask& mask, RTCRay16& rays, bool coherent) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(mask.valid, scene, &rays, &arguments);
+}
 #else
 void intersect(RTCScene scene, RTCRayHit& ray) {
   RTCIntersectContext context;
@@ -203,14 +274,16 @@ void occlude(RTCScene scene, RTCRay& ray) {
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene, &context, &ray);
 }
-void intersect(RTCScene scene, const PacketMask& mask, RTCRayHit16& rays) {
+void intersect(RTCScene scene, const PacketMask& mask, RTCRayHit16& rays, bool coherent) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(mask.valid, scene, &context, &rays);
 }
-void occlude(RTCScene scene, const PacketMask& mask, RTCRay16& rays) {
+void occlude(RTCScene scene, const PacketMask& mask, RTCRay16& rays, bool coherent) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(mask.valid, scene, &context, &rays);
 }
 #endif
@@ -240,34 +313,39 @@ bool Caster::occluded(const Ray& ray) const {
 
 void Caster::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
   assert(rays.size() == hits.size());
+  const bool camera = from_one_point(rays);
   RTCRayHit16 query;
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t count = std::min(packet_size, rays.size() - first);
-    set_rays(query.ray, rays.subspan(first, count));
-    for (size_t i = 0; i < count; ++i) {
+  set_constants(query.ray);
+  const bool coherent = camera || impl_->coherent(rays.size());
+  for_each_packet(rays, camera, [&](size_t first, std::span<const uint16_t> chosen) {
+    set_rays(query.ray, rays.subspan(first), chosen);
+    for (size_t i = 0; i < packet_size; ++i) {
       query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    intersect(impl_->scene, PacketMask(count), query);
-    for (size_t i = 0; i < count; ++i) {
-      hits[first + i] = {};
-      if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-        hits[first + i] = {impl_->geometry(query.hit.geomID[i]).triangles[query.hit.primID[i]],
-                           {query.hit.u[i], query.hit.v[i]},
-                           query.ray.tfar[i]};
+    intersect(impl_->scene, PacketMask(chosen.size()), query, coherent);
+    for (size_t i = 0; i < chosen.size(); ++i) {
+      Hit& hit = hits[first + chosen[i]];
+      if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+        hit = {};
+      else
+        hit = {impl_->geometry(query.hit.geomID[i]).triangles[query.hit.primID[i]],
+               {query.hit.u[i], query.hit.v[i]},
+               query.ray.tfar[i]};
     }
-  }
+  });
 }
 
 void Caster::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
   assert(rays.size() == blocked.size());
   RTCRay16 query;
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t count = std::min(packet_size, rays.size() - first);
-    set_rays(query, rays.subspan(first, count));
-    occlude(impl_->scene, PacketMask(count), query);
-    for (size_t i = 0; i < count; ++i) blocked[first + i] = query.tfar[i] < 0.0f;
-  }
+  set_constants(query);
+  const bool coherent = impl_->coherent(rays.size());
+  for_each_packet(rays, false, [&](size_t first, std::span<const uint16_t> chosen) {
+    set_rays(query, rays.subspan(first), chosen);
+    occlude(impl_->scene, PacketMask(chosen.size()), query, coherent);
+    for (size_t i = 0; i < chosen.size(); ++i) blocked[first + chosen[i]] = query.tfar[i] < 0.0f;
+  });
 }
 
 float Caster::surface_offset() const { return impl_->offset; }

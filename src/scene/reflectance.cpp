@@ -7,16 +7,15 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "scene/reflectance_inline.h"
+
 namespace voxref {
 
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
+using inlined::schlick_weight;
 
-float schlick_weight(float v_h) {
-  const float m = std::clamp(1.0f - v_h, 0.0f, 1.0f);
-  return m * m * m * m * m;
-}
+constexpr float pi = std::numbers::pi_v<float>;
 
 // The lobe's directional albedo is linear in its two Fresnel terms:
 //
@@ -153,30 +152,13 @@ const AlbedoTables& tables() {
 }  // namespace
 
 float ggx_distribution(const glm::vec3& normal, const glm::vec3& half, float alpha) {
-  const float a2 = alpha * alpha;
-  // (n.h)^2 (a2 - 1) + 1 with the sine from the cross product: 1 - (n.h)^2 would have no digits left in a narrow lobe,
-  // which then holds up to 8 % too much.
-  const float cosine = glm::dot(normal, half);
-  const glm::vec3 across = glm::cross(normal, half);
-  const float d = a2 * cosine * cosine + glm::dot(across, across);
-  return a2 / (pi * d * d);
+  return inlined::ggx_distribution(normal, half, alpha);
 }
 
-float ggx_visibility(float n_l, float n_v, float alpha) {
-  const float a2 = alpha * alpha;
-  const float from_l = n_v * std::sqrt(a2 + (1.0f - a2) * n_l * n_l);
-  const float from_v = n_l * std::sqrt(a2 + (1.0f - a2) * n_v * n_v);
-  return 0.5f / (from_l + from_v);
-}
+float ggx_visibility(float n_l, float n_v, float alpha) { return inlined::ggx_visibility(n_l, n_v, alpha); }
 
 glm::vec3 evaluate(const Reflectance& r, const glm::vec3& normal, const glm::vec3& out, const glm::vec3& in) {
-  const float n_v = glm::dot(normal, out), n_l = glm::dot(normal, in);
-  if (n_v <= 0.0f || n_l <= 0.0f) return glm::vec3(0.0f);
-  if (!r.has_specular() && r.layer_f0 == 0.0f && r.layer_f1 == 0.0f) return r.diffuse / pi;
-  const glm::vec3 h = glm::normalize(out + in);
-  const float s = schlick_weight(glm::dot(out, h));
-  const float lobe = ggx_distribution(normal, h, r.alpha) * ggx_visibility(n_l, n_v, r.alpha);
-  return r.diffuse / pi * (1.0f - (r.layer_f0 + r.layer_f1 * s)) + lobe * (r.specular_f0 + r.specular_f1 * s);
+  return inlined::evaluate(r, normal, out, in);
 }
 
 glm::vec3 specular_albedo(const Reflectance& r, float n_v) {

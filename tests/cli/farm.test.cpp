@@ -59,7 +59,7 @@ TEST_CASE("a default that is typed out is the same render, and a different value
 
 TEST_CASE("parts join to the bits of one render", "[cli]") {
   const Workplace place;
-  const std::string command = "path point.glb --size 40x30 --spp 8 --quiet -o ";
+  const std::string command = "path point.glb --size 80x60 --spp 8 --quiet -o ";
   REQUIRE(place.run(command + "whole.exr").status == 0);
   for (const std::string part : {"1", "2", "3"})
     REQUIRE(place.run(command + "part" + part + ".exr --part " + part + "/3").status == 0);

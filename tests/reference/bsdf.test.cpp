@@ -50,7 +50,7 @@ glm::vec3 direction(float cosine, float angle) {
   return {sine * std::cos(angle), sine * std::sin(angle), cosine};
 }
 
-std::optional<BsdfSample> draw(const Bsdf& bsdf, uint32_t i) {
+BsdfSample draw(const Bsdf& bsdf, uint32_t i) {
   const Sampler sampler(randomization_key(7, i, 0, 0), 0);  // independent: each the first of its own randomization
   return bsdf.sample(sampler.get_1d(0), sampler.get_2d(1));
 }
@@ -67,12 +67,12 @@ TEST_CASE("Directions drawn from a BSDF follow its pdf", "[bsdf]") {
       const Bsdf bsdf(point, direction(cosine, 0.4f));
       std::vector<double> observed(side * side + 1), expected(side * side + 1);
       for (uint32_t i = 0; i < count; ++i) {
-        const std::optional<BsdfSample> sample = draw(bsdf, i);
+        const BsdfSample sample = draw(bsdf, i);
         size_t bin = side * side;
         if (sample) {
-          CHECK(sample->pdf == Approx(bsdf.pdf(sample->in)));
-          const float turn = std::atan2(sample->in.y, sample->in.x) / (2.0f * std::numbers::pi_v<float>)+0.5f;
-          bin = static_cast<size_t>(std::min(static_cast<int>(sample->in.z * side), side - 1) * side +
+          CHECK(sample.pdf == Approx(bsdf.pdf(sample.in)));
+          const float turn = std::atan2(sample.in.y, sample.in.x) / (2.0f * std::numbers::pi_v<float>)+0.5f;
+          bin = static_cast<size_t>(std::min(static_cast<int>(sample.in.z * side), side - 1) * side +
                                     std::min(static_cast<int>(turn * side), side - 1));
         }
         observed[bin] += 1.0;
@@ -105,8 +105,8 @@ TEST_CASE("Sample weights average to the directional albedo, which for a metal n
         const Bsdf bsdf(point, direction(cosine, 1.0f));
         double sum = 0.0, squares = 0.0;
         for (uint32_t i = 0; i < count; ++i) {
-          const std::optional<BsdfSample> sample = draw(bsdf, i);
-          const double weight = sample ? sample->weight.g : 0.0;
+          const BsdfSample sample = draw(bsdf, i);
+          const double weight = sample ? sample.weight.g : 0.0;
           sum += weight;
           squares += weight * weight;
         }
@@ -142,7 +142,7 @@ TEST_CASE("A direction behind the geometric surface carries nothing", "[bsdf]") 
   CHECK(bsdf.value(behind) == glm::vec3(0.0f));
   CHECK(bsdf.value(direction(0.5f, 0.0f)) != glm::vec3(0.0f));
   for (uint32_t i = 0; i < 1000; ++i)
-    if (const std::optional<BsdfSample> sample = draw(bsdf, i)) CHECK(sample->in.z > 0.0f);
+    if (const BsdfSample sample = draw(bsdf, i)) CHECK(sample.in.z > 0.0f);
 }
 
 }  // namespace voxref

@@ -135,7 +135,7 @@ TEST_CASE("Reflected directions follow their pdf to the ends of the lobe's tails
         const auto sample = bsdf.sample(0.0f, independent(i, 3).get_2d(0));
         size_t bin = side * side;
         if (sample) {
-          const glm::dvec2 at = square.of(glm::normalize(out + glm::dvec3(sample->in)));
+          const glm::dvec2 at = square.of(glm::normalize(out + glm::dvec3(sample.in)));
           bin = bin_of(at.x, side) * side + bin_of(at.y, side);
         }
         observed[bin] += 1.0;
@@ -189,7 +189,7 @@ TEST_CASE("A white lobe returns what its formula returns, and so loses what face
       double sum = 0.0, squares = 0.0;
       for (uint32_t i = 0; i < draws; ++i) {
         const auto sample = bsdf.sample(0.0f, independent(i, 4).get_2d(0));
-        const double weight = sample ? sample->weight.g : 0.0;
+        const double weight = sample ? sample.weight.g : 0.0;
         sum += weight;
         squares += weight * weight;
       }

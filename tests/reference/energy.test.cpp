@@ -30,8 +30,8 @@ Mean white_furnace(float roughness, float cosine, bool compensated) {
     point.reflectance.alpha = roughness * roughness;
     if (compensated) compensate_energy(point.reflectance, z);
     const Bsdf bsdf(point, {std::sqrt(1.0f - z * z), 0.0f, z});
-    const std::optional<BsdfSample> sample = bsdf.sample(0.0f, sampler.get_2d(0));
-    const double weight = sample ? sample->weight.g : 0.0;
+    const BsdfSample sample = bsdf.sample(0.0f, sampler.get_2d(0));
+    const double weight = sample ? sample.weight.g : 0.0;
     sum += weight;
     squares += weight * weight;
   }

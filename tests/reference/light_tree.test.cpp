@@ -88,7 +88,7 @@ LightBounds point_bounds(const glm::vec3& position, float intensity) {
 }  // namespace
 
 TEST_CASE("A light tree draws each light as often as it says", "[light_tree]") {
-  for (const int count : {3, 200}) {  // by intensity alone, and by where they are
+  for (const int count : {3, 200}) {
     CAPTURE(count);
     Randomness random;
     std::vector<LightBounds> lights;
@@ -122,6 +122,32 @@ TEST_CASE("A light tree draws each light as often as it says", "[light_tree]") {
       CHECK(chi_square_p(observed, expected) > 1e-4);
       // Uniform again: the mean of n numbers has the standard error 1 / sqrt(12 n).
       CHECK(std::abs(rests / (draws - missed) - 0.5) < 4.0 / std::sqrt(12.0 * (draws - missed)));
+    }
+  }
+}
+
+TEST_CASE("A table of few lights draws each as often as it says, and leaves a uniform rest", "[light_tree]") {
+  for (const std::vector<float>& intensities :
+       {std::vector<float>{2.0f}, {1.0f, 1.0f}, {1e-3f, 5.0f, 1e-3f}, {3.0f, 0.5f, 1.0f, 2.5f}}) {
+    const LightTable table(intensities);
+    // Numbers on a fine regular grid: shares and means are off by less than a step or two.
+    constexpr int steps = 1 << 20;
+    constexpr double tolerance = 4.0 / steps;
+    std::vector<double> share(intensities.size()), rest(intensities.size());
+    for (int i = 0; i < steps; ++i) {
+      const LightChoice choice = table.choose(static_cast<float>(i) / steps);
+      REQUIRE(choice.index < intensities.size());
+      REQUIRE(choice.probability == table.probability(choice.index));
+      REQUIRE((choice.rest >= 0.0f && choice.rest < 1.0f));
+      share[choice.index] += 1.0 / steps;
+      rest[choice.index] += choice.rest / steps;
+    }
+    double total = 0.0;
+    for (const float intensity : intensities) total += intensity;
+    for (uint32_t i = 0; i < intensities.size(); ++i) {
+      CHECK(std::abs(table.probability(i) - intensities[i] / total) < 1e-6);
+      CHECK(std::abs(share[i] - table.probability(i)) < tolerance);
+      CHECK(std::abs(rest[i] - 0.5 * share[i]) < tolerance);
     }
   }
 }

@@ -164,10 +164,10 @@ TEST_CASE("A cancelled render keeps its finished passes, or throws when there is
   std::atomic<bool> cancel = true;
   Progress progress;
   progress.cancel = &cancel;
-  CHECK_THROWS_AS(path_trace(scene, caster, room_view(32), options, progress), Interrupted);
+  CHECK_THROWS_AS(path_trace(scene, caster, room_view(64), options, progress), Interrupted);
   cancel = false;
   progress.report = [&](std::string_view, double fraction) { cancel = fraction > 0.27; };
-  const PathResult stopped = path_trace(scene, caster, room_view(32), options, progress);
+  const PathResult stopped = path_trace(scene, caster, room_view(64), options, progress);
   CHECK(stopped.interrupted);
   CHECK(stopped.spp == 16);  // 0.27 of 64 is early in the fifth pass
   CHECK(stopped.image.channel("samples")[0] == 16.0f);

@@ -8,7 +8,7 @@
 namespace voxref {
 
 TEST_CASE("Parts share out all tiles, each once, and differ by one at most", "[tiles]") {
-  const TileGrid grid(100, 50);  // 7 x 4 tiles
+  const TileGrid grid(200, 100);  // 7 x 4 tiles
   REQUIRE(grid.count() == 28);
   for (const int count : {1, 2, 3, 7, 11, 28}) {
     std::vector<size_t> all;
@@ -26,7 +26,7 @@ TEST_CASE("Parts share out all tiles, each once, and differ by one at most", "[t
 }
 
 TEST_CASE("Tiles cover an image whose sides they do not divide, each pixel once", "[tiles]") {
-  const int width = 37, height = 18;
+  const int width = 75, height = 40;
   const TileGrid grid(width, height);
   std::vector<int> visits(static_cast<size_t>(width * height), 0);
   for (size_t tile = 0; tile < grid.count(); ++tile)
@@ -42,7 +42,7 @@ TEST_CASE("Tiles cover an image whose sides they do not divide, each pixel once"
 
 TEST_CASE("A part is spread over the image", "[tiles]") {
   // Of 32 x 32 tiles: of the 256 of each quadrant a fair share, to a quarter of it.
-  const TileGrid grid(512, 512);
+  const TileGrid grid(1024, 1024);
   for (const int count : {2, 4, 8, 16}) {
     std::array<int, 4> quadrants{};
     for (const size_t tile : grid.tiles_of({1, count})) ++quadrants[tile / 512 * 2 + tile % 32 / 16];
