@@ -59,7 +59,7 @@ class Bsdf {
   /// BSDF x cosine to the shading normal, 1/sr.
   glm::vec3 value(const glm::vec3& in) const {
     const float cosine = glm::dot(normal_, in);
-    const glm::vec3 f = cosine * (lambertian_ ? std::numbers::inv_pi_v<float> * reflectance_.diffuse
+    const glm::vec3 f = cosine * (lambertian_ ? reflectance_.diffuse / std::numbers::pi_v<float>
                                               : inlined::evaluate(reflectance_, normal_, out_, in));
     return select((cosine > 0.0f) & (glm::dot(geometric_normal_, in) > 0.0f), f, glm::vec3(0.0f));
   }

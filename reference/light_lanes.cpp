@@ -31,8 +31,8 @@ void LightSampler::sample_punctual(const Vertices& vertices, const uint32_t* bit
   for (size_t i = 0; i < vertices.size(); ++i) {
     const std::optional<PunctualSample> sample = sample_punctual(vertices.receiver(i), bits[i]);
     found.light.set(i, sample ? sample->irradiance : glm::vec3(0.0f));
+    found.to_light.set(i, sample ? sample->to_light : glm::vec3(0.0f));
     if (!sample) continue;
-    found.to_light.set(i, sample->to_light);
     found.distance[i] = sample->distance;
   }
 }
@@ -68,8 +68,8 @@ void LightSampler::sample_emitter(const Vertices& vertices, const uint32_t* x, c
   for (size_t i = 0; i < vertices.size(); ++i) {
     const std::optional<EmitterSample> sample = sample_emitter(vertices.receiver(i), {x[i], y[i]});
     found.light.set(i, sample ? sample->radiance : glm::vec3(0.0f));
+    found.to_light.set(i, sample ? sample->to_light : glm::vec3(0.0f));
     if (!sample) continue;
-    found.to_light.set(i, sample->to_light);
     found.position.set(i, sample->position);
     found.normal.set(i, sample->normal);
     found.pdf[i] = sample->pdf;

@@ -33,7 +33,7 @@ struct EmitterSample {
 class Vertices;
 
 /// What is sampled at each of many vertices: the members of PunctualSample or EmitterSample. Where there is nothing,
-/// `light` is zero and the rest undefined.
+/// `light` is zero, `to_light` without length or right, and the rest undefined.
 struct LightLanes {
   Lanes3 to_light;
   Lanes3 light;             // irradiance of a punctual light, radiance of an emissive triangle

@@ -56,6 +56,8 @@ TEST_CASE("a bad command line is refused in one line that names the flag", "[cli
   check_refused(place, "path point.glb -o out.exr --spp", "--spp: needs a value");
   check_refused(place, "path point.glb -o out.exr --spp 1 --spp 2", "--spp: given more than once");
   check_refused(place, "path point.glb -o --json", "-o: ");
+  for (const std::string goal : {"--noise 0.1", "--time 1"})
+    check_refused(place, "path point.glb -o out.exr --randomizations 1 " + goal, "--randomizations: not with");
   for (const std::string size : {"0x0", "16x0", "-4x4", "16x16x16", "1e2x4", "65537x1", "65536x65536"})
     check_refused(place, "path point.glb -o out.exr --size " + size, "--size: ");
   for (const std::string value : {"--spp 0", "--spp 1.5", "--noise nan", "--time inf", "--max-depth -1", "--seed 1x",
@@ -151,6 +153,8 @@ TEST_CASE("with --json a command prints one object with the keys that scripts re
   CHECK(bench["scenes"].size() == 1);
   CHECK(bench["scenes"][0]["ratio"]["min"] <= bench["scenes"][0]["ratio"]["max"]);
   CHECK(bench["scenes"][0]["ratio"]["min"] > 0);
+  const json mesh = place.run_json("bench point.glb --mesh --rounds 1 --seconds 0.05" + small_cone);
+  CHECK(mesh["scenes"][0]["scene"] == "point.glb with a mesh");
 }
 
 TEST_CASE("an error beyond the budget ends check with 1, one within it with 0", "[cli]") {

@@ -133,7 +133,9 @@ void add_path_options(CLI::App& command, PathOptions& options) {
   command.add_flag("--irradiance", options.extra.irradiance, "layer irradiance too: what arrives at the first hit");
   command.add_flag("--energy-compensation", options.energy_compensation,
                    "rough metals keep the light that facets throw at each other (default: as glTF, they lose it)");
-  command.parse_complete_callback([&options] {
+  command.parse_complete_callback([&options, &command] {
+    if (command.count("--randomizations") > 0 && (options.noise || options.seconds))
+      throw Error("--randomizations", "not with --noise or --time: there, each pass is one, until the goal is reached");
     if (options.spp == 0 && !options.noise && !options.seconds) options.spp = usual_spp;
   });
 }
