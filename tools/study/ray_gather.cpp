@@ -72,7 +72,7 @@ std::vector<glm::vec3> gather_rays(const std::vector<SeenPoint>& seen, const Vie
       for (int r = 0; r < rays; ++r) {
         const Sampler sampler(key, uint32_t(r));
         if (const auto sample = bsdf.sample(sampler.get_1d(0), sampler.get_2d(1)))
-          sum += sample->weight * incoming(seen[i].point, sample->in);
+          sum += sample.weight * incoming(seen[i].point, sample.in);
       }
       light[i] = sum / float(rays);
     }
