@@ -89,6 +89,17 @@ void require_writable(const fs::path& file) {
   fs::remove(temporary, error);
 }
 
+ScratchFolder::ScratchFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "voxref-XXXXXX").string();
+  if (!::mkdtemp(name.data())) throw Error(name, std::string("cannot be made: ") + std::strerror(errno));
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
 std::string read_file(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) throw Error(file.string(), "there is no such file");

@@ -20,6 +20,20 @@ void remove_leftovers(const std::filesystem::path& file);
 /// itself. Leaves nothing behind. @throws Error with the path
 void require_writable(const std::filesystem::path& file);
 
+/// A fresh folder for files that nobody needs later; goes away with its object.
+class ScratchFolder {
+ public:
+  /// @throws Error when the system's folder for temporary files takes none
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 /// @throws Error with the path when it is missing or cannot be read
 std::string read_file(const std::filesystem::path& file);
 

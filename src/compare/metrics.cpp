@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "compare/flip.h"
-#include "compare/ssim.h"
+#include "compare/displayed.h"
 #include "error.h"
 
 namespace voxref {
@@ -101,37 +98,6 @@ void measure_radiance(Metrics& metrics, const Layer& cone, const Layer& path) {
   metrics.relmse = relative;
 }
 
-/// psnr, ssim and flip, of what a display shows: radiance x 2^exposure, clipped to [0,1].
-void measure_pictures(Metrics& metrics, const Image& cone, const Image& path, float exposure) {
-  const float scale = std::exp2(exposure);
-  const size_t count = cone.pixel_count();
-  double squares = 0.0;
-  std::array<std::vector<glm::vec3>, 2> linear;
-  std::array<std::vector<float>, 2> luma;
-  std::array<std::vector<glm::vec3>, 2> encoded;
-  const std::array<Layer, 2> layers = {cone.layer(""), path.layer("")};
-  for (size_t side = 0; side < 2; ++side) {
-    linear[side].resize(count);
-    luma[side].resize(count);
-    encoded[side].resize(count);
-    for (size_t i = 0; i < count; ++i) {
-      const glm::vec3 shown = glm::clamp(pixel(layers[side], i) * scale, 0.0f, 1.0f);
-      linear[side][i] = shown;
-      encoded[side][i] = {srgb_encode(shown.r), srgb_encode(shown.g), srgb_encode(shown.b)};
-      luma[side][i] = luminance(encoded[side][i]);  // BT.709 luma: the same weights on encoded values
-    }
-  }
-  for (size_t i = 0; i < count; ++i) {
-    const glm::dvec3 difference = glm::dvec3(encoded[0][i]) - glm::dvec3(encoded[1][i]);
-    squares += glm::dot(difference, difference);
-  }
-  metrics.psnr = -10.0 * std::log10(squares / (3.0 * static_cast<double>(count)));
-  metrics.ssim = ssim(cone.width(), cone.height(), luma[0], luma[1]);
-  double sum = 0.0;
-  for (const float value : flip_map(cone.width(), cone.height(), linear[1], linear[0])) sum += double{value};
-  metrics.flip = sum / static_cast<double>(count);
-}
-
 }  // namespace
 
 Metrics compare(const Image& cone, const Image& path, bool indirect_only, float exposure) {
@@ -149,7 +115,10 @@ Metrics compare(const Image& cone, const Image& path, bool indirect_only, float 
   }
   measure_luminance(metrics, values);
   measure_radiance(metrics, cone.layer(""), path.layer(""));
-  measure_pictures(metrics, cone, path, exposure);
+  const DisplayedDifference displayed = displayed_difference(cone, path, exposure);
+  metrics.psnr = displayed.psnr;
+  metrics.ssim = displayed.ssim;
+  metrics.flip = displayed.flip;
   return metrics;
 }
 

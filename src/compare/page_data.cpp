@@ -19,31 +19,46 @@ constexpr size_t most_pixels = size_t{512} * 512;
 /// Of all embedded layers in base64. 3 MiB less the room for the template and the tables.
 constexpr size_t most_layer_bytes = (size_t{3} * 1024 - 160) * 1024;
 
+bool has_negative(const Image& image) {
+  const auto planes = image.layer("");
+  return std::ranges::any_of(planes, [](std::span<const float> plane) {
+    return std::ranges::any_of(plane, [](float v) { return v < 0.0f; });
+  });
+}
+
 /// Four bytes per pixel, Ward 1991: mantissas of 8 bits that share the exponent of the largest; exponent byte 255
-/// stands for a pixel that is not finite. Laid out as a picture, for PNG compresses it well: `height` rows of
-/// mantissas as R,G,B, below them the exponents, those of three rows as the R,G,B of one.
-std::vector<uint8_t> shared_exponent_rows(const Image& image) {
+/// stands for a pixel that is not finite. Signed ones have 7 bits, and 128 added. Laid out as a picture, for PNG
+/// compresses it well: `height` rows of mantissas as R,G,B, below them the exponents, those of three rows as the R,G,B
+/// of one.
+std::vector<uint8_t> shared_exponent_rows(const Image& image, bool with_sign) {
   const auto planes = image.layer("");
   const auto width = static_cast<size_t>(image.width()), height = static_cast<size_t>(image.height());
   const size_t exponent_rows = (height + 2) / 3;
+  const int bits = with_sign ? 7 : 8;
+  const long zero = with_sign ? 128 : 0, largest_mantissa = (1 << bits) - 1;
   std::vector<uint8_t> bytes(3 * width * (height + exponent_rows), 0);
   for (size_t y = 0; y < height; ++y)
     for (size_t x = 0; x < width; ++x) {
       const size_t i = y * width + x;
       const std::array<float, 3> rgb = {planes[0][i], planes[1][i], planes[2][i]};
+      for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = static_cast<uint8_t>(zero);
       uint8_t& shared = bytes[3 * ((height + y / 3) * width + x) + y % 3];
       if (!std::all_of(rgb.begin(), rgb.end(), [](float v) { return std::isfinite(v); })) {
         shared = 255;
         continue;
       }
-      const float largest = *std::max_element(rgb.begin(), rgb.end());
-      if (largest <= 0.0f) continue;
+      const float largest = std::max({std::abs(rgb[0]), std::abs(rgb[1]), std::abs(rgb[2])});
+      if (largest == 0.0f) continue;
       int exponent = 0;
-      std::frexp(largest * (256.0f / 255.5f), &exponent);  // so that rounding the largest gives 255 at most
+      // So that rounding the largest gives the largest mantissa at most.
+      std::frexp(largest * (static_cast<float>(largest_mantissa + 1) / (static_cast<float>(largest_mantissa) + 0.5f)),
+                 &exponent);
       exponent = std::clamp(exponent, -127, 126);
       shared = static_cast<uint8_t>(exponent + 128);
-      for (size_t c = 0; c < 3; ++c)
-        bytes[3 * i + c] = static_cast<uint8_t>(std::clamp(std::lround(std::ldexp(rgb[c], 8 - exponent)), 0L, 255L));
+      for (size_t c = 0; c < 3; ++c) {
+        const long mantissa = std::lround(std::ldexp(rgb[c], bits - exponent));
+        bytes[3 * i + c] = static_cast<uint8_t>(zero + std::clamp(mantissa, -zero, largest_mantissa));
+      }
     }
   return bytes;
 }
@@ -71,7 +86,7 @@ int reduction(const Image& image) {
 
 /// Sum of layers as layer "" of a smaller image, each pixel the mean of factor x factor; cut blocks at the right and
 /// lower edge.
-Image reduced(const Image& image, std::span<const std::string_view> layers, int factor) {
+Image reduced(const Image& image, std::span<const std::string> layers, int factor) {
   Image result((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor);
   result.add_layer("");
   std::vector<float> pixels(result.pixel_count(), 0.0f);
@@ -81,7 +96,7 @@ Image reduced(const Image& image, std::span<const std::string_view> layers, int 
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) pixels[block(x, y)] += 1.0f;
   const auto target = result.layer("");
-  for (const std::string_view layer : layers) {
+  for (const std::string& layer : layers) {
     const auto source = std::as_const(image).layer(layer);
     for (size_t c = 0; c < 3; ++c)
       for (int y = 0; y < image.height(); ++y)
@@ -93,38 +108,35 @@ Image reduced(const Image& image, std::span<const std::string_view> layers, int 
   return result;
 }
 
-std::string encoded(const Image& image) {
-  const std::vector<uint8_t> bytes = shared_exponent_rows(image);
+std::string encoded(const Image& image, bool with_sign) {
+  const std::vector<uint8_t> bytes = shared_exponent_rows(image, with_sign);
   return base64(encode_png(image.width(), image.height() + (image.height() + 2) / 3, bytes));
+}
+
+bool has_all(const Image& image, const std::vector<std::string>& layers) {
+  return std::ranges::all_of(layers, [&](const std::string& layer) { return image.has_layer(layer); });
 }
 
 }  // namespace
 
-nlohmann::json page_data(const CheckReport& report) {
-  struct LayerPair {
-    const char* name;
-    std::vector<std::string_view> cone, path;
-  };
-  const std::array<LayerPair, 3> pairs = {
-      {{"total", {""}, {""}}, {"indirect", {"diffuse", "specular"}, {"indirect"}}, {"direct", {"direct"}, {"direct"}}}};
-  const auto has = [](const Image& image, const std::vector<std::string_view>& layers) {
-    return std::all_of(layers.begin(), layers.end(), [&](std::string_view layer) { return image.has_layer(layer); });
-  };
-  const int factor = reduction(report.cone);
+nlohmann::json page_data(const ComparisonPage& page) {
+  const int factor = reduction(page.a);
   nlohmann::json layers = nlohmann::json::array();
   size_t bytes = 0;
-  for (const LayerPair& pair : pairs) {
-    if (!has(report.cone, pair.cone) || !has(report.path, pair.path)) continue;
-    std::string cone = encoded(reduced(report.cone, pair.cone, factor));
-    std::string path = encoded(reduced(report.path, pair.path, factor));
-    if (bytes + cone.size() + path.size() > most_layer_bytes) break;
-    bytes += cone.size() + path.size();
-    layers.push_back({{"name", pair.name}, {"cone", std::move(cone)}, {"path", std::move(path)}});
+  for (const PageLayer& pair : page.layers) {
+    if (!has_all(page.a, pair.a) || !has_all(page.b, pair.b)) continue;
+    const Image a = reduced(page.a, pair.a, factor), b = reduced(page.b, pair.b, factor);
+    const bool with_sign = has_negative(a) || has_negative(b);
+    std::string data_a = encoded(a, with_sign), data_b = encoded(b, with_sign);
+    if (bytes + data_a.size() + data_b.size() > most_layer_bytes) break;
+    bytes += data_a.size() + data_b.size();
+    layers.push_back({{"name", pair.name}, {"signed", with_sign}, {"a", std::move(data_a)}, {"b", std::move(data_b)}});
   }
-  return {{"width", (report.cone.width() + factor - 1) / factor},
-          {"height", (report.cone.height() + factor - 1) / factor},
+  return {{"width", (page.a.width() + factor - 1) / factor},
+          {"height", (page.a.height() + factor - 1) / factor},
           {"factor", factor},
-          {"exposure", report.exposure},
+          {"exposure", page.exposure},
+          {"names", {{"a", page.name_a}, {"b", page.name_b}}},
           {"layers", std::move(layers)},
           {"cool_warm", std::vector<Color>(cool_warm().begin(), cool_warm().end())},
           {"inferno", std::vector<Color>(inferno().begin(), inferno().end())},

@@ -2,6 +2,8 @@
 #include "image/image_file.h"
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -111,6 +113,21 @@ StoredImage read_stored_image(const std::filesystem::path& path, const ChannelFi
 }
 
 Image read_image(const std::filesystem::path& file) { return read_stored_image(file).image; }
+
+uint64_t yee_difference(const Image& a, const Image& b, float exposure) {
+  const auto shown = [&](const Image& image) {
+    const auto planes = image.layer("");
+    const float scale = std::exp2(exposure);
+    OIIO::ImageBuf buffer(OIIO::ImageSpec(image.width(), image.height(), 3, OIIO::TypeDesc::FLOAT));
+    for (OIIO::ImageBuf::Iterator<float> pixel(buffer); !pixel.done(); ++pixel) {
+      const size_t i = size_t(pixel.y()) * size_t(image.width()) + size_t(pixel.x());
+      for (int c = 0; c < 3; ++c) pixel[c] = std::clamp(planes[size_t(c)][i] * scale, 0.0f, 1.0f);
+    }
+    return buffer;
+  };
+  OIIO::ImageBufAlgo::CompareResults result;
+  return static_cast<uint64_t>(OIIO::ImageBufAlgo::compare_Yee(shown(a), shown(b), result));
+}
 
 std::vector<uint8_t> encode_png(int width, int height, std::span<const uint8_t> rgb) {
   std::vector<uint8_t> file;

@@ -28,6 +28,11 @@ struct StoredImage {
 StoredImage read_stored_image(const std::filesystem::path& file, const ChannelFilter& wanted = {});
 Image read_image(const std::filesystem::path& file);
 
+/// Pixels of layer "" that an observer could tell apart, Yee 2004, "A Perceptual Metric for Production Testing", as
+/// OpenImageIO computes it for a display of 100 cd/m^2 that fills 45 degrees. Both images, of equal size and finite,
+/// are shown as display_bytes shows them, without its rounding.
+uint64_t yee_difference(const Image& a, const Image& b, float exposure);
+
 /// 8-bit RGB, rows from the top, as they shall be shown (already encoded for display): an entire PNG file in memory.
 /// @param rgb 3 * width * height bytes
 std::vector<uint8_t> encode_png(int width, int height, std::span<const uint8_t> rgb);

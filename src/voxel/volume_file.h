@@ -22,6 +22,7 @@ ArrayFile open_volume(const std::filesystem::path& folder, const VolumeEntry& en
 class VolumeFolder {
  public:
   explicit VolumeFolder(std::filesystem::path folder);
+  const std::filesystem::path& folder() const { return folder_; }
   const Grid& grid() const { return index_.grid; }
   const std::vector<VolumeEntry>& entries() const { return index_.volumes; }
   bool has(const std::string& volume) const { return index_.find(volume) != nullptr; }

@@ -29,16 +29,16 @@ struct GpuCase {
 };
 
 /// Where two volumes differ: how many texels, by how much at most, and the first.
-struct VolumeDifference {
+struct TexelDifferences {
   size_t texels = 0;
   int largest = 0;
   std::string first;
 };
 
 /// Holds a .npy file of bytes against another. @param channels per texel
-inline VolumeDifference difference(const std::filesystem::path& ours, const std::filesystem::path& theirs) {
+inline TexelDifferences difference(const std::filesystem::path& ours, const std::filesystem::path& theirs) {
   ArrayFile a(ours), b(theirs);
-  VolumeDifference result;
+  TexelDifferences result;
   if (a.shape() != b.shape() || a.type() != ElementType::uint8 || b.type() != ElementType::uint8) {
     result.texels = a.slice_size();
     result.first = "another shape or type";

@@ -26,7 +26,7 @@ void check_volumes(const GpuCase& gpu, const std::filesystem::path& folder) {
   const VolumeFolder ours(folder);
   for (const VolumeEntry& volume : ours.entries()) {
     const std::string file = volume.name + ".npy";
-    const VolumeDifference d = difference(folder / file, gpu.folder / "volumes" / file);
+    const TexelDifferences d = difference(folder / file, gpu.folder / "volumes" / file);
     CAPTURE(volume.name, d.first, d.largest);
     CHECK(d.texels == 0);
   }
@@ -79,7 +79,7 @@ TEST_CASE("The bounce from the published shaders' volumes is theirs but for roun
     VolumeFolderWriter writer(folder.path, surfaces.grid, Storage::unorm8);
     writer.write_radiance(surfaces, bounced.radiance, true);
     writer.finish();
-    const VolumeDifference d =
+    const TexelDifferences d =
         difference(folder.path / "radiance_bounce.npy", gpu.folder / "volumes" / "radiance_bounce.npy");
     CAPTURE(d.first);
     // The sum of the cones is not rounded in the same order; a value half-way between two bytes may go either way.

@@ -11,7 +11,7 @@
 #include "closed_form/expect.h"
 #include "closed_form/polygon.h"
 #include "reference/small_scenes.h"
-#include "reference/statistics.h"
+#include "compare/statistics.h"
 
 namespace voxref {
 

@@ -13,7 +13,7 @@
 #include "make_scenes/builders.h"
 #include "parallel.h"
 #include "reference/small_scenes.h"
-#include "reference/statistics.h"
+#include "compare/statistics.h"
 #include "scene/surface.h"
 
 namespace voxref {

@@ -8,7 +8,7 @@
 #include "catch.h"
 #include "parallel.h"
 #include "reference/small_scenes.h"
-#include "reference/statistics.h"
+#include "compare/statistics.h"
 
 namespace voxref {
 

@@ -11,6 +11,8 @@ void add_merge(CLI::App& program, Run& run);
 void add_cone(CLI::App& program, Run& run);
 void add_check(CLI::App& program, Run& run);
 void add_stage(CLI::App& program, Run& run);
+void add_diff(CLI::App& program, Run& run);
+void add_golden(CLI::App& program, Run& run);
 void add_study(CLI::App& program, Run& run);
 void add_plan(CLI::App& program, Run& run);
 void add_bench(CLI::App& program, Run& run);

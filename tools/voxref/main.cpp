@@ -46,6 +46,8 @@ int run(int argc, char* argv[]) {
   add_cone(program, command);
   add_check(program, command);
   add_stage(program, command);
+  add_diff(program, command);
+  add_golden(program, command);
   add_study(program, command);
   add_plan(program, command);
   add_bench(program, command);

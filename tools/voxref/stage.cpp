@@ -8,9 +8,8 @@
 #include "outputs.h"
 #include "parallel.h"
 #include "provenance.h"
+#include "stages.h"
 #include "summary.h"
-#include "voxel/volume_file.h"
-#include "voxel/volume_writer.h"
 
 namespace voxref {
 
@@ -38,56 +37,6 @@ struct Input {
 Scene stage_scene(const Input& input) {
   if (input.options.scene.file.empty()) throw Error("SCENE", "stage " + input.options.stage + " needs one");
   return load_scene(input.options.scene, input.terminal);
-}
-
-template <class Texel>
-void run_shade(const Input& input) {
-  const Scene scene = stage_scene(input);
-  const Caster caster(scene);
-  const SurfaceGrid surfaces = input.volumes.surfaces();
-  const Settings& settings = input.settings;
-  Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, input.terminal.progress());
-  Clamping clamped;
-  for (glm::vec3& radiance : lit.radiance) radiance = clamped.store<Texel>(radiance);
-  warn(input.terminal, clamped, settings.storage, "shading");
-  VolumeFolderWriter writer(input.output, surfaces.grid, settings.storage);
-  writer.write_visibility(surfaces, lit.visibility);
-  writer.write_radiance(surfaces, lit.radiance, false);
-  writer.finish();
-}
-
-template <class Texel>
-void run_mipmap(const Input& input) {
-  const Grid& grid = input.volumes.grid();
-  VolumeFolderWriter writer(input.output, grid, input.settings.storage);
-  bool found = false;
-  for (const bool bounced : {false, true}) {
-    if (!input.volumes.has(bounced ? "radiance_bounce" : "radiance")) continue;
-    found = true;
-    writer.write_levels(
-        mipmap(grid, input.volumes.base<Texel>(bounced), input.settings.mipmap, input.terminal.progress()), bounced);
-  }
-  if (!found) throw Error(input.options.from, "volumes.json", "has neither radiance nor radiance_bounce to filter");
-  writer.finish();
-}
-
-template <class Texel>
-void run_bounce(const Input& input) {
-  const SurfaceGrid surfaces = input.volumes.surfaces();
-  const auto direct = input.volumes.radiance(surfaces, false);
-  const Settings& settings = input.settings;
-  // What the stage before made of it, where it is there: an error in it shall not be taken for one of this stage.
-  const bool filtered = input.volumes.has(aniso_name(0, 0, false));
-  BasicPyramid<Texel> pyramid =
-      filtered ? input.volumes.pyramid<Texel>(false) : mipmap<Texel>(surfaces, direct, settings.mipmap);
-  const BasicBounceResult<Texel> result =
-      bounce(surfaces, direct, std::move(pyramid), settings.bounce, settings.render.cone, settings.mipmap,
-             input.options.view.background, input.terminal.progress());
-  warn(input.terminal, result.clamped, settings.storage, "the last bounce");
-  VolumeFolderWriter writer(input.output, surfaces.grid, settings.storage);
-  writer.write_radiance(surfaces, result.radiance, true);
-  writer.write_levels(result.pyramid, true);
-  writer.finish();
 }
 
 template <class Texel>
@@ -124,12 +73,17 @@ int run_stage(const Options& options) {
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Input input{options, make_settings(options.settings), VolumeFolder(options.from), terminal, options.output};
-  with_texel(input.settings.storage, [&]<class Texel>(std::type_identity<Texel>) {
-    if (options.stage == "shade") run_shade<Texel>(input);
-    if (options.stage == "mipmap") run_mipmap<Texel>(input);
-    if (options.stage == "bounce") run_bounce<Texel>(input);
-    if (options.stage == "gather") run_gather<Texel>(input);
-  });
+  const Progress progress = terminal.progress();
+  const Settings& settings = input.settings;
+  if (options.stage == "shade")
+    warn(terminal, run_shade(input.volumes, stage_scene(input), settings, input.output, progress), settings.storage,
+         "shading");
+  if (options.stage == "mipmap") run_mipmap(input.volumes, settings, input.output, progress);
+  if (options.stage == "bounce")
+    warn(terminal, run_bounce(input.volumes, settings, options.view.background, input.output, progress),
+         settings.storage, "the last bounce");
+  if (options.stage == "gather")
+    with_texel(settings.storage, [&]<class Texel>(std::type_identity<Texel>) { run_gather<Texel>(input); });
   terminal.say("written   " + options.output);
   terminal.result({{"stage", options.stage}, {"from", options.from}, {"output", options.output}});
   return exit_done;

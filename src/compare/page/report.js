@@ -5,17 +5,17 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const { width, height } = data;
 const element = (id) => document.getElementById(id);
 const modes = [
-  { name: "swipe", label: "Swipe" }, { name: "flicker", label: "Flicker" }, { name: "cone", label: "Cone" },
-  { name: "path", label: "Path" }, { name: "difference", label: "Difference" },
+  { name: "swipe", label: "Swipe" }, { name: "flicker", label: "Flicker" }, { name: "a", label: data.names.a },
+  { name: "b", label: data.names.b }, { name: "difference", label: "Difference" },
   { name: "error", label: "Relative error" },
 ];
 const show = {
-  mode: "swipe", layer: 0, exposure: data.exposure, divider: 0.5, flickerCone: true,
+  mode: "swipe", layer: 0, exposure: data.exposure, tone: "clip", divider: 0.5, flickerA: true,
   zoom: 1, panX: 0, panY: 0,  // device pixels per image pixel, and where the image's corner lies
   range: 1,                   // the difference map spans [-range, range]
   pixel: [Math.floor(width / 2), Math.floor(height / 2)],
 };
-let layers = [];    // [{name, cone: Float32Array, path: Float32Array}], r,g,b per pixel; NaN where not finite
+let layers = [];    // [{name, a: Float32Array, b: Float32Array}], r,g,b per pixel; NaN where not finite
 let pictures = {};  // canvases of image size by name, painted when first needed, dropped when their settings change
 
 // ---------------------------------------------------------------------------------------------- reading the data
@@ -59,13 +59,13 @@ function paeth(left, up, corner) {
 }
 
 /** Floats from 8-bit mantissas and, in the rows below them, the exponents they share (Ward 1991). */
-function decode(bytes) {
+function decode(bytes, signed) {
   const rgb = new Float32Array(3 * width * height);
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       const exponent = bytes[3 * ((height + Math.floor(y / 3)) * width + x) + (y % 3)];
-      const scale = exponent === 255 ? NaN : 2 ** (exponent - 136);
-      for (let c = 0; c < 3; ++c) rgb[3 * (y * width + x) + c] = bytes[3 * (y * width + x) + c] * scale;
+      const scale = exponent === 255 ? NaN : 2 ** (exponent - (signed ? 135 : 136)), zero = signed ? 128 : 0;
+      for (let c = 0; c < 3; ++c) rgb[3 * (y * width + x) + c] = (bytes[3 * (y * width + x) + c] - zero) * scale;
     }
   return rgb;
 }
@@ -73,6 +73,8 @@ function decode(bytes) {
 const luminance = (rgb, i) => 0.2126 * rgb[3 * i] + 0.7152 * rgb[3 * i + 1] + 0.0722 * rgb[3 * i + 2];
 
 // ---------------------------------------------------------------------------------------------- painting pictures
+
+const toneMaps = { clip: (v) => v, reinhard: (v) => v / (1 + Math.max(v, 0)) };
 
 function encode(linear) {  // sRGB, 0 to 255
   const v = Math.min(Math.max(linear, 0), 1);
@@ -103,21 +105,21 @@ function paintRadiance(rgb) {
   const scale = 2 ** show.exposure;
   return paint((i) => {
     const pixel = [rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]];
-    return pixel.some(Number.isNaN) ? data.nonfinite_color : pixel.map((v) => encode(v * scale));
+    return pixel.some(Number.isNaN) ? data.nonfinite_color : pixel.map((v) => encode(toneMaps[show.tone](v * scale)));
   });
 }
 
 function picture(name) {
-  const { cone, path } = layers[show.layer];
+  const { a, b } = layers[show.layer];
   pictures[name] ??= {
-    cone: () => paintRadiance(cone),
-    path: () => paintRadiance(path),
+    a: () => paintRadiance(a),
+    b: () => paintRadiance(b),
     difference: () => paint((i) =>
-      mapColor(data.cool_warm, 0.5 + (0.5 * (luminance(cone, i) - luminance(path, i))) / show.range)),
+      mapColor(data.cool_warm, 0.5 + (0.5 * (luminance(a, i) - luminance(b, i))) / show.range)),
     error: () => {
-      const floor = 0.01 * meanLuminance(path) || Number.MIN_VALUE;
+      const floor = 0.01 * meanLuminance(b) || Number.MIN_VALUE;
       return paint((i) => mapColor(data.inferno,
-        Math.abs(luminance(cone, i) - luminance(path, i)) / Math.max(luminance(path, i), floor)));
+        Math.abs(luminance(a, i) - luminance(b, i)) / Math.max(luminance(b, i), floor)));
     },
   }[name]();
   return pictures[name];
@@ -137,9 +139,9 @@ function roundUp(value) {
 
 /** The 95th percentile of the absolute difference, rounded up. */
 function automaticRange() {
-  const { cone, path } = layers[show.layer], values = [];
+  const { a, b } = layers[show.layer], values = [];
   for (let i = 0; i < width * height; ++i) {
-    const value = Math.abs(luminance(cone, i) - luminance(path, i));
+    const value = Math.abs(luminance(a, i) - luminance(b, i));
     if (Number.isFinite(value)) values.push(value);
   }
   values.sort((a, b) => a - b);
@@ -186,19 +188,20 @@ const dividerX = () => show.panX + show.divider * width * show.zoom;
 function redraw() {
   if (!layers.length) return;
   context.clearRect(0, 0, canvas.width, canvas.height);
-  const labels = { swipe: ["cone", "path"], flicker: [show.flickerCone ? "cone" : "path", ""], cone: ["cone", ""],
-                   path: ["path", ""], difference: ["cone − path", ""], error: ["relative error", ""] };
+  const names = data.names;
+  const labels = { swipe: [names.a, names.b], flicker: [show.flickerA ? names.a : names.b, ""], a: [names.a, ""],
+                   b: [names.b, ""], difference: [`${names.a} − ${names.b}`, ""], error: ["relative error", ""] };
   if (show.mode === "swipe") {
     const x = Math.min(Math.max(dividerX(), 0), canvas.width);
-    drawPicture("cone", 0, x);
-    drawPicture("path", x, canvas.width);
+    drawPicture("a", 0, x);
+    drawPicture("b", x, canvas.width);
     context.fillStyle = "#fff";
     context.fillRect(x - ratio(), 0, 2 * ratio(), canvas.height);
     context.beginPath();
     context.arc(x, canvas.height / 2, 9 * ratio(), 0, 2 * Math.PI);
     context.fill();
   } else {
-    const name = show.mode === "flicker" ? (show.flickerCone ? "cone" : "path") : show.mode;
+    const name = show.mode === "flicker" ? (show.flickerA ? "a" : "b") : show.mode;
     drawPicture(name, 0, canvas.width);
   }
   [element("left-label").textContent, element("right-label").textContent] = labels[show.mode];
@@ -223,10 +226,12 @@ function updateControls() {
     button.setAttribute("aria-checked", String(button.dataset.mode === show.mode));
   element("layer").value = String(show.layer);
   element("exposure").value = String(show.exposure);
+  element("tone").value = show.tone;
   const sign = show.exposure >= 0 ? "+" : "−";
   element("exposure-value").textContent = `${sign}${Math.abs(show.exposure).toFixed(2)} stops`;
   element("range-value").textContent = "± " + digits(show.range);
   element("exposure-choice").hidden = ["difference", "error"].includes(show.mode);  // they show numbers, not light
+  element("tone-choice").hidden = element("exposure-choice").hidden;
   element("range-choice").hidden = show.mode !== "difference";
   updateBar();
   updateReadout();
@@ -235,8 +240,8 @@ function updateControls() {
 function updateBar() {
   const map = {
     difference:
-      [data.cool_warm, digits(-show.range), "cone darker · luminance · cone brighter", "+" + digits(show.range)],
-    error: [data.inferno, "0", "|cone − path| / max(path, 1 % of its mean)", "100 % and more"],
+      [data.cool_warm, digits(-show.range), `${data.names.a} darker · luminance · ${data.names.a} brighter`, "+" + digits(show.range)],
+    error: [data.inferno, "0", `|${data.names.a} − ${data.names.b}| / max(${data.names.b}, 1 % of its mean)`, "100 % and more"],
   }[show.mode];
   element("bar").hidden = !map;
   if (!map) return;
@@ -249,10 +254,10 @@ function updateBar() {
 }
 
 function updateReadout() {
-  const [x, y] = show.pixel, i = y * width + x, { cone, path } = layers[show.layer];
+  const [x, y] = show.pixel, i = y * width + x, { a, b } = layers[show.layer];
   const values = (rgb) => [rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], luminance(rgb, i)];
-  const rows = { cone: values(cone), path: values(path) };
-  rows.difference = rows.cone.map((v, c) => v - rows.path[c]);
+  const rows = { a: values(a), b: values(b) };
+  rows.difference = rows.a.map((v, c) => v - rows.b[c]);
   element("readout-place").textContent =
     data.factor > 1 ? `pixel (${x}, ${y}), mean of ${data.factor} × ${data.factor}` : `pixel (${x}, ${y})`;
   for (const [name, row] of Object.entries(rows))
@@ -264,16 +269,22 @@ function updateReadout() {
 const actions = {
   mode(name) { show.mode = name; redraw(); },
   alternate() {
-    if (show.mode !== "flicker") show.mode = show.mode === "cone" ? "path" : "cone";
-    else show.flickerCone = !show.flickerCone;
+    if (show.mode !== "flicker") show.mode = show.mode === "a" ? "b" : "a";
+    else show.flickerA = !show.flickerA;
     redraw();
   },
   layer(index) { show.layer = index % layers.length; show.range = automaticRange(); pictures = {}; redraw(); },
   exposure(stops) {
     const limits = element("exposure");
     show.exposure = Math.min(Math.max(stops, Number(limits.min)), Number(limits.max));
-    delete pictures.cone;
-    delete pictures.path;
+    delete pictures.a;
+    delete pictures.b;
+    redraw();
+  },
+  tone(name) {
+    show.tone = name;
+    delete pictures.a;
+    delete pictures.b;
     redraw();
   },
   range(up) {
@@ -296,7 +307,7 @@ function onKey(event) {
     "+": () => actions.zoom(2), "=": () => actions.zoom(2), "-": () => actions.zoom(0.5),
     e: () => actions.exposure(show.exposure + 0.25), d: () => actions.exposure(show.exposure - 0.25),
     r: () => actions.exposure(data.exposure), "[": () => actions.range(false), "]": () => actions.range(true),
-    l: () => actions.layer(show.layer + 1),
+    l: () => actions.layer(show.layer + 1), t: () => actions.tone(show.tone === "clip" ? "reinhard" : "clip"),
     ArrowLeft: () => actions.divider(-0.01), ArrowRight: () => actions.divider(0.01),
   };
   modes.forEach((mode, i) => { keys[i + 1] = () => actions.mode(mode.name); });
@@ -353,6 +364,7 @@ function listen() {
   element("exposure").min = String(Math.floor(data.exposure) - 8);
   element("exposure").max = String(Math.floor(data.exposure) + 8);
   element("exposure").addEventListener("input", (event) => actions.exposure(Number(event.target.value)));
+  element("tone").addEventListener("change", (event) => actions.tone(event.target.value));
   element("range-down").addEventListener("click", () => actions.range(false));
   element("range-up").addEventListener("click", () => actions.range(true));
   element("zoom-in").addEventListener("click", () => actions.zoom(2));
@@ -361,7 +373,7 @@ function listen() {
   element("zoom-one").addEventListener("click", () => { setZoom(Math.max(1, Math.round(ratio()))); redraw(); });
   document.addEventListener("keydown", onKey);
   window.addEventListener("resize", fit);
-  setInterval(() => { if (show.mode === "flicker") { show.flickerCone = !show.flickerCone; redraw(); } }, 600);
+  setInterval(() => { if (show.mode === "flicker") { show.flickerA = !show.flickerA; redraw(); } }, 600);
   listenToPointer();
 }
 
@@ -374,8 +386,8 @@ function fail(message) {
 window.addEventListener("error", (event) => fail(event.message));
 
 async function start() {
-  layers = await Promise.all(data.layers.map(async ({ name, cone, path }) =>
-    ({ name, cone: decode(await readPng(cone)), path: decode(await readPng(path)) })));
+  layers = await Promise.all(data.layers.map(async ({ name, signed, a, b }) =>
+    ({ name, a: decode(await readPng(a), signed), b: decode(await readPng(b), signed) })));
   show.range = automaticRange();
   listen();
   // A link to report.html#difference opens the page there.
