@@ -5,10 +5,29 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 
 namespace voxref {
+
+namespace {
+
+/// IEEE 754 arithmetic while it lives, denormal numbers included, rounding to nearest. Embree leaves some of the
+/// threads that it shares with us in a mode that takes denormals for zero: results would depend on which thread got
+/// which work.
+class PlainArithmetic {
+ public:
+  PlainArithmetic() : found_(_mm_getcsr()) { _mm_setcsr(usual); }
+  ~PlainArithmetic() { _mm_setcsr(found_); }
+  PlainArithmetic(const PlainArithmetic&) = delete;
+
+ private:
+  static constexpr unsigned usual = 0x1f80;  ///< the processor's state at start: all exceptions masked
+  unsigned found_;
+};
+
+}  // namespace
 
 struct ThreadLimit::Impl {
   explicit Impl(size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
@@ -28,7 +47,11 @@ void parallel_for(size_t count, size_t grain, const std::function<void(size_t, s
   grain = std::max<size_t>(grain, 1);
   const size_t chunks = (count + grain - 1) / grain;
   tbb::parallel_for(
-      size_t{0}, chunks, [&](size_t chunk) { body(chunk * grain, std::min(count, (chunk + 1) * grain)); },
+      size_t{0}, chunks,
+      [&](size_t chunk) {
+        const PlainArithmetic plain;
+        body(chunk * grain, std::min(count, (chunk + 1) * grain));
+      },
       tbb::simple_partitioner());
 }
 

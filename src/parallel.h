@@ -25,7 +25,8 @@ int thread_count();
 
 /// Calls body(begin, end) for consecutive ranges of at most `grain` indices that together cover [0, count). The cut
 /// depends on `count` and `grain` alone, never on the number of threads: partial results indexed by begin / grain merge
-/// to the same bits. An exception from a body ends the loop and is rethrown.
+/// to the same bits. Bodies compute with denormal numbers, whatever mode their thread was left in. An exception from a
+/// body ends the loop and is rethrown.
 void parallel_for(size_t count, size_t grain, const std::function<void(size_t begin, size_t end)>& body);
 
 }  // namespace voxref

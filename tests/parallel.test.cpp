@@ -1,5 +1,7 @@
 #include "parallel.h"
 
+#include <xmmintrin.h>
+
 #include <atomic>
 #include <numeric>
 #include <stdexcept>
@@ -34,4 +36,20 @@ TEST_CASE("a body's exception reaches the caller", "[parallel]") {
   int calls = 0;
   parallel_for(0, 10, [&](size_t, size_t) { ++calls; });
   CHECK(calls == 0);
+}
+
+TEST_CASE("denormal numbers count on every thread, whatever mode a library left it in", "[parallel]") {
+  constexpr unsigned flush_and_zero = 0x8040;  // FTZ and DAZ of the SSE control register
+  const unsigned found = _mm_getcsr();
+  _mm_setcsr(found | flush_and_zero);
+  std::vector<int> kept(64);
+  parallel_for(kept.size(), 1, [&](size_t begin, size_t) {
+    volatile float denormal = 1e-40f;
+    kept[begin] = denormal * 0x1p100f > 0.0f;
+  });
+  const unsigned after = _mm_getcsr();
+  _mm_setcsr(found);
+  CHECK(std::accumulate(kept.begin(), kept.end(), 0) == 64);
+  constexpr unsigned mode = ~0x3fu;  // but for the exceptions seen so far
+  CHECK((after & mode) == ((found | flush_and_zero) & mode));
 }

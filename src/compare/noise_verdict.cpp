@@ -84,7 +84,7 @@ struct Judge {
   size_t width;
   double freedom_a, freedom_b;
   double corrected;    ///< significance of one test
-  double least_scale;  ///< a tenth of the image's mean: what is darker is not judged by its own mean
+  double least_scale;  ///< the mean by which darker regions are judged
 
   RegionTest test(int x, int y, int w, int h, double margin) const {
     RegionSums a, b;
@@ -212,7 +212,7 @@ NoiseVerdict judge_noise(const Image& a, const Image& b, const NoiseOptions& opt
                 0.5 * options.significance / regions,
                 0.0};
     const RegionTest image = judge.test(0, 0, width, height, options.margin);
-    judge.least_scale = 0.1 * std::abs(image.b.mean);
+    judge.least_scale = options.dark * std::abs(image.b.mean);
     open |= !image.equivalent();
     different |= judge.differs(image);
     verdict.image.push_back(image);
@@ -232,6 +232,7 @@ nlohmann::json to_json(const NoiseVerdict& verdict) {
                          {"power", options.power},
                          {"margin", options.margin},
                          {"tile_margin", options.tile_margin},
+                         {"dark", options.dark},
                          {"tile", options.tile},
                          {"image", nlohmann::json::array()},
                          {"tiles", verdict.tiles},

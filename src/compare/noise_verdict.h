@@ -21,6 +21,7 @@ struct NoiseOptions {
   double power = 0.9;          ///< with which the smallest detectable difference is found
   double margin = 0.01;        ///< of the image's mean, relative: a difference within it does not matter
   double tile_margin = 0.05;   ///< of a tile's mean, relative
+  double dark = 0.1;           ///< share of the image's mean: what is darker is judged as if it were as bright as that
   int tile = 32;               ///< pixels a side
 };
 
@@ -29,7 +30,7 @@ struct RegionTest {
   int x = 0, y = 0, width = 0, height = 0;
   std::string channel;
   Estimate a, b;
-  double margin = 0.0;  ///< absolute: the relative margin of the larger of the region's mean and a tenth of the image's
+  double margin = 0.0;  ///< absolute: the relative margin of the region's mean, see `dark`
   double confidence = 0.0;  ///< half the width of the interval around a - b that the equivalence test uses
   double detectable = 0.0;  ///< smallest difference that the corrected test would have found with the stated power
   double p = 1.0;           ///< of Welch's test, not corrected

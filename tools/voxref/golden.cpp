@@ -116,14 +116,15 @@ struct CaseVerdict {
   double seconds = 0.0;
 };
 
-/// Limits of path-traced cases. Margins are what the samples of both sides can show: the darkest tiles' errors leave
-/// room below them, and 1 % of the light or 2 % of one material's albedo lie beyond. Of 1000 runs on the same truth one
+/// Limits of path-traced cases. Margins are what the samples of both sides can show, with room below for the noise of
+/// the roughest tile; 1 % of the light or 2 % of one material's albedo lie beyond. Of 1000 runs on the same truth one
 /// may fail.
 NoiseOptions noise_limits(size_t cases) {
   NoiseOptions limits;
   limits.significance = 1e-3 / static_cast<double>(cases);
   limits.margin = 0.005;
   limits.tile_margin = 0.018;
+  limits.dark = 0.5;
   limits.tile = 24;
   return limits;
 }
@@ -200,7 +201,7 @@ CaseVerdict verify(const Options& options, const GoldenCase& golden, const nlohm
   const nlohmann::json now = nlohmann::json::parse(describe(golden, scene).dump());  // numbers as a file holds them
   const auto known =
       std::ranges::find_if(index["cases"], [&](const auto& c) { return c.value("name", "") == golden.name; });
-  for (const char* key : {"kind", "scene_sha256", "size", "settings", "seed", "spp"}) {
+  for (const char* key : {"kind", "scene_sha256", "size", "settings", "seed", "spp", "max_depth"}) {
     if (known != index["cases"].end() && known->value(key, nlohmann::json()) == now.value(key, nlohmann::json()))
       continue;
     result.verdict = Verdict::different;
@@ -269,9 +270,15 @@ void add_golden(CLI::App& program, Run& run) {
     options->seed = parse_integer("--seed", text, 0, std::numeric_limits<uint64_t>::max());
     if (options->seed == golden_seed) throw Error("--seed", "is the set's own; a fresh one judges it");
   });
-  add_value_option(*command, "--case", "NAME", "only this one (repeatable)",
-                   [options](const std::string& text) { options->only.insert(text); });
-  command->get_option("--case")->allow_extra_args(false)->take_all();
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--case",
+          [options](const std::vector<std::string>& names) {
+            options->only = {names.begin(), names.end()};
+          },
+          "only this one (repeatable)")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   add_common_options(*command, options->common);
   command->footer("Exit status: 0 all cases agree, 1 some do not, 2 could not.\n\nExample:\n  voxref golden verify");
   on_run(command, run, [options] {

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct GoldenCase {
   std::string profile = "radiometric";
   std::vector<std::string> assignments{};  ///< key=value on top of the profile
   int side = 96;                           ///< pixels of the square image
+  std::optional<int> max_depth{};          ///< path: none: unlimited
 
   View view(const Scene& loaded) const;
   Settings settings() const;
