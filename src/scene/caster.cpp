@@ -116,8 +116,8 @@ struct Caster::Impl {
   }
 
   /// Whether packets shall be taken through the tree as one, which pays where the tree is so small that most of it
-  /// concerns all rays, and the rays so many that most packets lie in one octant. On the Cornell box, 36 triangles, a
-  /// sixth more rays per second for a thousand rays; on 70,000 triangles less than half as many.
+  /// concerns all rays, and the rays so many that most packets lie in one octant. In the Cornell box, 36 triangles, a
+  /// thousand rays are cast 18 to 39 % faster so; in a box with 70,000 triangles at half the speed.
   bool coherent(size_t rays) const {
     constexpr size_t few_triangles = 256, enough_rays = 256;
     return opaque.triangles.size() + filtered.triangles.size() <= few_triangles && rays >= enough_rays;
@@ -178,7 +178,7 @@ struct alignas(64) PacketMask {
 };
 
 /// Rays in the order in which they go into packets: by the signs of their directions' components. Rays that agree in
-/// these meet boxes in the same order. Of a thousand rays off diffuse surfaces a fifth more are cast per second so.
+/// these meet boxes in the same order. Of a thousand rays off the Cornell box's walls 13 to 17 % more are cast per second.
 class RayOrder {
  public:
   static constexpr size_t most_rays = 1024;
