@@ -178,7 +178,8 @@ struct alignas(64) PacketMask {
 };
 
 /// Rays in the order in which they go into packets: by the signs of their directions' components. Rays that agree in
-/// these meet boxes in the same order. Of a thousand rays off the Cornell box's walls 13 to 17 % more are cast per second.
+/// these meet boxes in the same order. Of a thousand rays off the Cornell box's walls 13 to 17 % more are cast per
+/// second.
 class RayOrder {
  public:
   static constexpr size_t most_rays = 1024;
