@@ -23,10 +23,11 @@ constexpr int usual_bounces = 6;           // until the first tells more: an alb
 constexpr size_t grain = 256;              // voxels per task, some milliseconds
 
 /// What a bounce gathers from: radiometric cones at the centroid.
+template <class Texel>
 class MediumGather {
  public:
-  MediumGather(const SurfaceGrid& surfaces, Medium&& medium, const BounceOptions& options, const ConeOptions& cone,
-               const glm::vec3& background)
+  MediumGather(const SurfaceGrid& surfaces, BasicMedium<Texel>&& medium, const BounceOptions& options,
+               const ConeOptions& cone, const glm::vec3& background)
       : surfaces_(surfaces),
         medium_(std::move(medium)),
         cones_(voxel_cones(options.cones)),
@@ -50,7 +51,7 @@ class MediumGather {
   }
 
   const SurfaceGrid& surfaces_;
-  Medium medium_;
+  BasicMedium<Texel> medium_;
   ConeSet cones_;
   const ConeOptions& cone_;
   glm::vec3 background_;

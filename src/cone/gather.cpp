@@ -14,7 +14,8 @@ struct Apex {
   OwnPlane own;
 };
 
-Apex apex_over(const Medium& medium, const GatherPoint& point, const ConeOptions& options) {
+template <class Texel>
+Apex apex_over(const BasicMedium<Texel>& medium, const GatherPoint& point, const ConeOptions& options) {
   const float voxel = medium.texels.grid.voxel;
   const glm::vec3 lift = apex_height(point.geometric_normal, options) * point.geometric_normal + point.aside / voxel;
   return {point.position + voxel * lift, {point.geometric_normal, lift}};
@@ -33,7 +34,8 @@ float apex_height(const glm::vec3& normal, const ConeOptions& options) {
   return options.start * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
 }
 
-DiffuseGather gather_diffuse(const Medium& medium, const ConeSet& cones, const GatherPoint& point,
+template <class Texel>
+DiffuseGather gather_diffuse(const BasicMedium<Texel>& medium, const ConeSet& cones, const GatherPoint& point,
                              const ConeOptions& options, const AoOptions& ao, const glm::vec3& background) {
   const Apex apex = apex_over(medium, point, options);
   const glm::mat3 frame = cones.frame(point.shading_normal);
@@ -58,7 +60,8 @@ DiffuseGather gather_diffuse(const Medium& medium, const ConeSet& cones, const G
   return result;
 }
 
-glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const glm::vec3& to_viewer,
+template <class Texel>
+glm::vec3 gather_specular(const BasicMedium<Texel>& medium, const GatherPoint& point, const glm::vec3& to_viewer,
                           float tan_half_angle, const ConeOptions& options, const glm::vec3& background) {
   const glm::vec3 mirrored = glm::reflect(-to_viewer, point.shading_normal);
   if (glm::dot(mirrored, point.geometric_normal) <= 0.0f) return glm::vec3(0.0f);
@@ -66,9 +69,26 @@ glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const 
   return march(medium, apex.position, mirrored, tan_half_angle, apex.own, {options.step, background}).radiance;
 }
 
-float gather_visibility(const Medium& medium, const GatherPoint& point, const glm::vec3& target, float tan_half_angle,
-                        const ConeOptions& options) {
+template <class Texel>
+float gather_visibility(const BasicMedium<Texel>& medium, const GatherPoint& point, const glm::vec3& target,
+                        float tan_half_angle, const ConeOptions& options) {
   return 1.0f - march_opacity(medium, apex_over(medium, point, options).position, target, tan_half_angle, options.step);
 }
+
+template DiffuseGather gather_diffuse(const Medium&, const ConeSet&, const GatherPoint&, const ConeOptions&,
+                                      const AoOptions&, const glm::vec3&);
+template glm::vec3 gather_specular(const Medium&, const GatherPoint&, const glm::vec3&, float, const ConeOptions&,
+                                   const glm::vec3&);
+template float gather_visibility(const Medium&, const GatherPoint&, const glm::vec3&, float, const ConeOptions&);
+template DiffuseGather gather_diffuse(const Medium16&, const ConeSet&, const GatherPoint&, const ConeOptions&,
+                                      const AoOptions&, const glm::vec3&);
+template glm::vec3 gather_specular(const Medium16&, const GatherPoint&, const glm::vec3&, float, const ConeOptions&,
+                                   const glm::vec3&);
+template float gather_visibility(const Medium16&, const GatherPoint&, const glm::vec3&, float, const ConeOptions&);
+template DiffuseGather gather_diffuse(const Medium8&, const ConeSet&, const GatherPoint&, const ConeOptions&,
+                                      const AoOptions&, const glm::vec3&);
+template glm::vec3 gather_specular(const Medium8&, const GatherPoint&, const glm::vec3&, float, const ConeOptions&,
+                                   const glm::vec3&);
+template float gather_visibility(const Medium8&, const GatherPoint&, const glm::vec3&, float, const ConeOptions&);
 
 }  // namespace voxref

@@ -53,15 +53,18 @@ struct DiffuseGather {
 float openness(float occlusion, const AoOptions& options);
 
 /// Diffuse cones around the shading normal of a surface point (spec section 5).
-DiffuseGather gather_diffuse(const Medium& medium, const ConeSet& cones, const GatherPoint& point,
+template <class Texel>
+DiffuseGather gather_diffuse(const BasicMedium<Texel>& medium, const ConeSet& cones, const GatherPoint& point,
                              const ConeOptions& options, const AoOptions& ao, const glm::vec3& background);
 
 /// One cone along the mirror direction of `to_viewer` (unit): mean radiance, before the lobe's directional albedo.
-glm::vec3 gather_specular(const Medium& medium, const GatherPoint& point, const glm::vec3& to_viewer,
+template <class Texel>
+glm::vec3 gather_specular(const BasicMedium<Texel>& medium, const GatherPoint& point, const glm::vec3& to_viewer,
                           float tan_half_angle, const ConeOptions& options, const glm::vec3& background);
 
 /// Transmittance of a cone from a surface point to `target` (world), in [0,1].
-float gather_visibility(const Medium& medium, const GatherPoint& point, const glm::vec3& target, float tan_half_angle,
-                        const ConeOptions& options);
+template <class Texel>
+float gather_visibility(const BasicMedium<Texel>& medium, const GatherPoint& point, const glm::vec3& target,
+                        float tan_half_angle, const ConeOptions& options);
 
 }  // namespace voxref

@@ -4,20 +4,45 @@
 #include <utility>
 
 namespace voxref {
+namespace {
 
-ExtinctionGatherer::ExtinctionGatherer(const Medium& medium, ConeSet diffuse, const GatherOptions& options)
+template <class Volume>
+inline constexpr bool is_medium = false;
+template <class Texel>
+inline constexpr bool is_medium<BasicMedium<Texel>> = true;
+
+}  // namespace
+
+std::optional<float> extinction_voxel(const LitVolume& volume) {
+  return std::visit(
+      [](const auto& v) -> std::optional<float> {
+        if constexpr (is_medium<std::decay_t<decltype(v)>>)
+          return v.texels.grid.voxel;
+        else
+          return std::nullopt;
+      },
+      volume);
+}
+
+template <class Texel>
+ExtinctionGatherer<Texel>::ExtinctionGatherer(const BasicMedium<Texel>& medium, ConeSet diffuse,
+                                              const GatherOptions& options)
     : medium_(medium), diffuse_(std::move(diffuse)), options_(options) {}
 
-DiffuseGather ExtinctionGatherer::diffuse(const GatherPoint& point) const {
+template <class Texel>
+DiffuseGather ExtinctionGatherer<Texel>::diffuse(const GatherPoint& point) const {
   return gather_diffuse(medium_, diffuse_, point, options_.cone, options_.ao, options_.background);
 }
 
-glm::vec3 ExtinctionGatherer::specular(const GatherPoint& point, const glm::vec3& to_viewer,
-                                       float tan_half_angle) const {
+template <class Texel>
+glm::vec3 ExtinctionGatherer<Texel>::specular(const GatherPoint& point, const glm::vec3& to_viewer,
+                                              float tan_half_angle) const {
   return gather_specular(medium_, point, to_viewer, tan_half_angle, options_.cone, options_.background);
 }
 
-float ExtinctionGatherer::visibility(const GatherPoint& point, const Light& light, const Illumination& lit) const {
+template <class Texel>
+float ExtinctionGatherer<Texel>::visibility(const GatherPoint& point, const Light& light,
+                                            const Illumination& lit) const {
   const Grid& grid = medium_.texels.grid;
   const bool directional = light.type == LightType::directional;  // then to a point outside the grid
   const glm::vec3 target =
@@ -28,9 +53,8 @@ float ExtinctionGatherer::visibility(const GatherPoint& point, const Light& ligh
 Gatherer::Gatherer(const LitVolume& volume, const GatherOptions& options)
     : gatherer_(std::visit(
           [&](const auto& v) -> decltype(gatherer_) {
-            using Volume = std::decay_t<decltype(v)>;
             ConeSet diffuse = pixel_cones(options.cone.diffuse);
-            if constexpr (std::is_same_v<Volume, Medium>)
+            if constexpr (is_medium<std::decay_t<decltype(v)>>)
               return ExtinctionGatherer(v, std::move(diffuse), options);
             else
               return RawGatherer(v, std::move(diffuse), options);

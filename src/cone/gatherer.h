@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -7,7 +8,7 @@
 namespace voxref {
 
 /// Filtered light and opacity, in the form that `cone.opacity` and `storage` ask for.
-using LitVolume = std::variant<Medium, Pyramid, Pyramid16, Pyramid8>;
+using LitVolume = std::variant<Medium, Medium16, Medium8, Pyramid, Pyramid16, Pyramid8>;
 
 /// Takes the pyramid's memory over.
 template <class Texel>
@@ -16,18 +17,22 @@ LitVolume lit_volume(BasicPyramid<Texel>&& pyramid, ConeOpacity opacity, MipmapF
   return make_medium(std::move(pyramid), filter);
 }
 
+/// Side of a voxel where cones go through extinction, world units; none where they are raw.
+std::optional<float> extinction_voxel(const LitVolume& volume);
+
 /// Gathers with cones through extinction (spec section 5, radiometric).
+template <class Texel>
 class ExtinctionGatherer {
  public:
   /// Keeps a reference to the medium.
-  ExtinctionGatherer(const Medium& medium, ConeSet diffuse, const GatherOptions& options);
+  ExtinctionGatherer(const BasicMedium<Texel>& medium, ConeSet diffuse, const GatherOptions& options);
 
   DiffuseGather diffuse(const GatherPoint& point) const;
   glm::vec3 specular(const GatherPoint& point, const glm::vec3& to_viewer, float tan_half_angle) const;
   float visibility(const GatherPoint& point, const Light& light, const Illumination& lit) const;
 
  private:
-  const Medium& medium_;
+  const BasicMedium<Texel>& medium_;
   ConeSet diffuse_;
   GatherOptions options_;
 };
@@ -45,7 +50,9 @@ class Gatherer {
   float visibility(const GatherPoint& point, const Light& light, const Illumination& lit) const;
 
  private:
-  std::variant<ExtinctionGatherer, RawGatherer<glm::vec4>, RawGatherer<Rgba16f>, RawGatherer<Rgba8>> gatherer_;
+  std::variant<ExtinctionGatherer<glm::vec4>, ExtinctionGatherer<Rgba16f>, ExtinctionGatherer<Rgba8>,
+               RawGatherer<glm::vec4>, RawGatherer<Rgba16f>, RawGatherer<Rgba8>>
+      gatherer_;
 };
 
 }  // namespace voxref

@@ -1,6 +1,6 @@
 #include "cone/light_visibility.h"
 
-#include "cone/raw_lookup.h"
+#include "cone/interpolate.h"
 
 namespace voxref {
 
@@ -11,8 +11,11 @@ LightVisibility::LightVisibility(const SurfaceGrid& surfaces, std::span<const fl
 }
 
 float LightVisibility::operator()(const glm::vec3& position) const {
-  const auto read = [](float share) { return Float4{share, share, share, share}; };
-  return trilinear_clamped(shares_, grid_.to_voxels(position), read)[0];
+  const Corners<float> corners = corners_clamped(shares_, to_float4(grid_.to_voxels(position)));
+  if (corners.empty) return 0.0f;
+  std::array<float, 8> shares;
+  for (size_t i = 0; i < 8; ++i) shares[i] = *corners.texels[i];
+  return mix_corners(shares, corners.f);
 }
 
 }  // namespace voxref

@@ -44,11 +44,10 @@ float power_of_two_below(float x) { return std::bit_cast<float>(std::bit_cast<ui
 /// of the scene or hold both sides of a room, and so are not opaque where the scene is. In closed cubes of 64 and 128
 /// voxels six cones then return 0.980 at worst instead of 0.969. A lower limit returns more, but a wide cone is then
 /// sampled along its axis only: at 1/16 the error on the Cornell box grows by half.
-float coarsest_texel(const Medium& medium) {
-  const glm::ivec3& size = medium.texels.grid.size;
+float coarsest_texel(const glm::ivec3& size, int top) {
   const float quarter = static_cast<float>(std::min({size.x, size.y, size.z})) / 4.0f;
   const float sixteenth = static_cast<float>(std::max({size.x, size.y, size.z})) / 16.0f;
-  return std::min(Medium::cell(medium.top()), std::max({quarter, sixteenth, 1.0f}));
+  return std::min(Medium::cell(top), std::max({quarter, sixteenth, 1.0f}));
 }
 
 /// The way of a march: from the apex along the plane of the own surface until the line from the surface point has
@@ -58,31 +57,36 @@ class Path {
  public:
   /// @param apex in voxels @param descends to the line from the surface point
   Path(const glm::vec3& apex, const glm::vec3& direction, const OwnPlane& own, bool descends)
-      : apex_(apex), direction_(direction), lift_(own.lift) {
+      : apex_(to_float4(apex)), direction_(to_float4(direction)), lift_(to_float4(own.lift)) {
     height_ = glm::dot(own.normal, own.lift);
     rise_ = glm::dot(own.normal, direction);
+    inverse_rise_ = 1.0f / rise_;
     if (descends && height_ > 0.0f) descent_ = std::max(rise_, 0.0f) / height_;
+    const Float4 descending = direction_ - descent_ * lift_;
+    first_ = Straight{descending, 1.0f / descending, descent_ > 0.0f ? 1.0f / descent_ : 0.0f};
+    last_ = Straight{direction_, 1.0f / direction_, infinity};
   }
-  glm::vec3 operator()(float s) const { return apex_ + s * direction_ - given_up(s) * lift_; }
+  Float4 operator()(float s) const { return apex_ + s * direction_ - given_up(s) * lift_; }
   float height(float s) const { return height_ + s * rise_ - given_up(s) * height_; }  ///< over the own plane
   /// Of the line that the march ends on.
-  glm::vec3 origin() const { return descent_ > 0.0f ? apex_ - lift_ : apex_; }
+  glm::vec3 origin() const { return glm::vec3(to_vec4(descent_ > 0.0f ? apex_ - lift_ : apex_)); }
 
   /// A stretch that is straight.
   struct Straight {
-    glm::vec3 direction;  ///< per unit of s
-    float end;            ///< it lasts until there
+    Float4 direction;  ///< per unit of s
+    Float4 inverse;    ///< 1 / direction
+    float end;         ///< it lasts until there
   };
-  Straight straight(float s) const {
-    if (s * descent_ >= 1.0f || descent_ == 0.0f) return {direction_, infinity};
-    return {direction_ - descent_ * lift_, 1.0f / descent_};
-  }
+  const Straight& straight(float s) const { return s < first_.end ? first_ : last_; }
+  /// Distance at which the march is this high over the own plane, when it has ended its descent.
+  float distance_at(float height) const { return (height - (descent_ > 0.0f ? 0.0f : height_)) * inverse_rise_; }
 
  private:
   float given_up(float s) const { return std::min(s * descent_, 1.0f); }  ///< share of the lift
 
-  glm::vec3 apex_, direction_, lift_;
-  float height_ = 0.0f, rise_ = 0.0f, descent_ = 0.0f;
+  Float4 apex_, direction_, lift_;
+  float height_ = 0.0f, rise_ = 0.0f, inverse_rise_ = infinity, descent_ = 0.0f;
+  Straight first_, last_;
 };
 
 /// How fine a cone samples, along its way; lengths in voxels.
@@ -90,69 +94,60 @@ class Resolution {
  public:
   /// @param widening of the texels per unit of s
   Resolution(float widening, const Path& path, const glm::vec3& own_normal, float coarsest)
-      : path_(path), widening_(widening), coarsest_(coarsest) {
+      : path_(path), widening_(widening), inverse_(1.0f / widening), coarsest_(coarsest) {
     // A filter reaches 1.5 texels along each axis, thus 1.5 |n|_1 texels towards the plane.
     const float reach = 1.5f * (std::abs(own_normal.x) + std::abs(own_normal.y) + std::abs(own_normal.z));
     if (reach > 0.0f) clear_per_height_ = 1.0f / reach;
+    height_per_clear_ = reach;
   }
-  /// Side of the texels at distance s: the cone's share, within what the pyramid holds and the own plane allows.
+  /// Side of the texels at distance s: the cone's share, within what the pyramid holds and the own plane allows. It
+  /// does not shrink along the way, since cones do not point below the plane.
   float texel(float s) const {
     const float side = std::clamp(widening_ * s, 1.0f, coarsest_);
     if (clear_per_height_ == 0.0f) return side;
     // Between two levels the coarser one must stay clear of the plane as well: the greatest is a whole level.
     return std::min(side, power_of_two_below(std::max(path_.height(s) * clear_per_height_, 1.0f)));
   }
+  /// Up to where texels are no wider than `side`, a power of two.
+  float until(float side) const {
+    if (side >= coarsest_) return infinity;
+    const float cone = side * inverse_;
+    if (clear_per_height_ == 0.0f) return cone;
+    return std::max(cone, path_.distance_at(2.0f * side * height_per_clear_));
+  }
 
  private:
   const Path& path_;
-  float widening_, coarsest_;
+  float widening_, inverse_, coarsest_;
   float clear_per_height_ = 0.0f;  ///< texels over the own plane's height; 0: there is no such plane
+  float height_per_clear_ = 0.0f;
 };
 
-/// A stretch of a march on which nothing is stored.
-struct Emptiness {
-  float end = 0.0f;   ///< of the stretch
-  float side = 0.0f;  ///< it is empty for texels up to this wide
-};
-
-/// How far an absent brick of level k reaches from p on. Of its texels those half a texel in from its faces are
-/// interpolated from it alone, and finer levels have no bricks inside of it either.
-template <class Texel>
-float empty_length(const BrickVolume<Texel>& volume, const glm::vec3& p, const glm::vec3& direction, float cell) {
-  constexpr int side = BrickVolume<Texel>::side;
-  const glm::vec3 in_bricks = p / (cell * side);
-  const glm::ivec3 brick(floor_to_int(in_bricks.x), floor_to_int(in_bricks.y), floor_to_int(in_bricks.z));
-  if (!volume.contains(brick * side) || volume.slot(brick) != BrickVolume<Texel>::absent) return 0.0f;
-  const glm::vec3 margin(0.5f * cell), inner = p - cell * glm::vec3(brick * side) - margin;
-  const Interval inside = clip(inner, direction, glm::vec3(cell * side) - 2.0f * margin);
-  return inside.begin == 0.0f ? inside.end : 0.0f;
+/// Level of texels of this width or, between two levels, the coarser one. @param side at least 1
+int level_above(float side) {
+  const uint32_t bits = std::bit_cast<uint32_t>(side);
+  return static_cast<int>((bits >> 23) - 127) + ((bits & 0x7fffffu) != 0);
 }
 
-/// What lies ahead of a sample that saw nothing, from the widest absent brick around it.
-Emptiness empty_ahead(const Medium& medium, const Path& path, float s, float side) {
-  constexpr int levels_up = 3;  // beyond, bricks are seldom absent
-  const Path::Straight straight = path.straight(s);
-  const glm::vec3 p = path(s);
-  const int finest = static_cast<int>(std::ceil(std::log2(side)));
-  for (int k = std::min(finest + levels_up, medium.top()); k >= finest; --k) {
-    const float cell = Medium::cell(k);
-    const float length = k == 0 ? empty_length(medium.texels.base, p, straight.direction, cell)
-                                : empty_length(medium.texels.levels[size_t(k - 1)], p, straight.direction, cell);
-    if (length > 0.0f) return {std::min(s + length, straight.end), cell};
-  }
-  return {};
+/// Where what is empty at distance s ends: `level` is, around p there.
+float end_of_gap(const Occupancy& occupied, const Path& path, const Resolution& resolution, float s, const Float4& p,
+                 int level) {
+  const Path::Straight& straight = path.straight(s);
+  const Occupancy::Gap gap = occupied.gap(level, p, straight.direction, straight.inverse);
+  return std::min({s + gap.length, straight.end, resolution.until(Medium::cell(gap.level))});
 }
 
 }  // namespace
 
-ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3& direction, float tan_half_angle,
-                 const OwnPlane& own, const MarchOptions& options, float max_distance) {
+template <class Texel>
+ConeSample march(const BasicMedium<Texel>& medium, const glm::vec3& origin, const glm::vec3& direction,
+                 float tan_half_angle, const OwnPlane& own, const MarchOptions& options, float max_distance) {
   const Grid& grid = medium.texels.grid;
   const glm::vec3 start = grid.to_voxels(origin);
   const float widening = 2.0f * tan_half_angle * options.texel;
   const Path path(start, direction, own, options.texel < 1.0f);
-  const Resolution resolution(widening, path, own.normal, coarsest_texel(medium));
-  const DirectionalRead read(direction);
+  const Resolution resolution(widening, path, own.normal, coarsest_texel(grid.size, medium.top()));
+  const OpticalRead read(direction);
 
   // Filters of texels at the box's border reach half a texel out of it, and border texels stick out of it by up to one.
   Interval inside = clip(path.origin(), direction, glm::vec3(grid.size));
@@ -161,9 +156,6 @@ ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3&
 
   Float4 gathered{};  // premultiplied radiance
   float transmittance = 1.0f, occlusion = 0.0f;
-  // The texels of wide cones outgrow a brick's level within a step or two.
-  const bool skips = widening < 0.5f;
-  Emptiness empty;
   for (float s = inside.begin; s < inside.end;) {
     // The middle of the step stands for it: halving the steps then changes little.
     const float length = std::min(options.step * resolution.texel(s), inside.end - s);
@@ -171,13 +163,15 @@ ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3&
     if (s + length <= s) break;  // so close to the end that float32 cannot step
     s += length;
     const float side = resolution.texel(middle);
-    if (middle < empty.end && side <= empty.side) continue;
-    const Float4 sample = quadrilinear(medium, path(middle), std::log2(side), read);
-    const float sigma = sample[3];
-    if (sigma == 0.0f) {
-      if (skips) empty = empty_ahead(medium, path, middle, side);
+    const Float4 p = path(middle);
+    const int level = level_above(side);
+    if (!medium.occupied(level, p)) {
+      s = std::max(s, end_of_gap(medium.occupied, path, resolution, middle, p, level));
       continue;
     }
+    const Float4 sample = quadrilinear(medium, p, std::log2(side), read);
+    const float sigma = sample[3];
+    if (sigma == 0.0f) continue;
 
     const float through = std::exp(-sigma * length);
     const float absorbed = transmittance * (1.0f - through);
@@ -199,7 +193,8 @@ ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3&
   return result;
 }
 
-float march_opacity(const Medium& medium, const glm::vec3& from, const glm::vec3& to, float tan_half_angle,
+template <class Texel>
+float march_opacity(const BasicMedium<Texel>& medium, const glm::vec3& from, const glm::vec3& to, float tan_half_angle,
                     float step) {
   const float distance = glm::distance(from, to);
   if (distance == 0.0f) return 0.0f;
@@ -207,5 +202,15 @@ float march_opacity(const Medium& medium, const glm::vec3& from, const glm::vec3
   options.step = step;
   return march(medium, from, (to - from) / distance, tan_half_angle, OwnPlane{}, options, distance).opacity;
 }
+
+template ConeSample march(const Medium&, const glm::vec3&, const glm::vec3&, float, const OwnPlane&,
+                          const MarchOptions&, float);
+template ConeSample march(const Medium16&, const glm::vec3&, const glm::vec3&, float, const OwnPlane&,
+                          const MarchOptions&, float);
+template ConeSample march(const Medium8&, const glm::vec3&, const glm::vec3&, float, const OwnPlane&,
+                          const MarchOptions&, float);
+template float march_opacity(const Medium&, const glm::vec3&, const glm::vec3&, float, float);
+template float march_opacity(const Medium16&, const glm::vec3&, const glm::vec3&, float, float);
+template float march_opacity(const Medium8&, const glm::vec3&, const glm::vec3&, float, float);
 
 }  // namespace voxref

@@ -31,11 +31,14 @@ struct ConeSample {
 /// Gathers along a cone, front to back, spec section 5 (radiometric).
 /// @param origin world; apex of the cone @param direction unit @param tan_half_angle at least 0
 /// @param max_distance world units; the march ends there (for shadow cones) without seeing the background
-ConeSample march(const Medium& medium, const glm::vec3& origin, const glm::vec3& direction, float tan_half_angle,
-                 const OwnPlane& own, const MarchOptions& options,
+template <class Texel>
+ConeSample march(const BasicMedium<Texel>& medium, const glm::vec3& origin, const glm::vec3& direction,
+                 float tan_half_angle, const OwnPlane& own, const MarchOptions& options,
                  float max_distance = std::numeric_limits<float>::infinity());
 
 /// Opacity alone, between two points.
-float march_opacity(const Medium& medium, const glm::vec3& from, const glm::vec3& to, float tan_half_angle, float step);
+template <class Texel>
+float march_opacity(const BasicMedium<Texel>& medium, const glm::vec3& from, const glm::vec3& to, float tan_half_angle,
+                    float step);
 
 }  // namespace voxref

@@ -1,92 +1,63 @@
 #include "cone/medium.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "cone/optical_depth.h"
+#include "cone/optical_texel.h"
 #include "parallel.h"
 
 namespace voxref {
 namespace {
 
-/// A texel of the given extinction; without opacity it has no colour either.
-glm::vec4 extinction(const glm::vec4& texel, float sigma) {
-  if (texel.a == 0.0f) return glm::vec4(0.0f);
-  return {glm::vec3(texel) * (sigma / texel.a), sigma};
-}
-
 constexpr size_t grain = 4096;  // texels: long enough to hide the cost of a task
 
-void convert(BrickVolume<glm::vec4>& volume) {
-  const std::span<glm::vec4> texels = volume.texels();
+template <class Texel>
+void convert(BrickVolume<Texel>& volume) {
+  const std::span<Texel> texels = volume.texels();
   parallel_for(texels.size(), grain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) texels[i] = extinction(texels[i], optical_depth(texels[i].a));
+    for (size_t i = begin; i < end; ++i) {
+      if (texels[i] == Texel{}) continue;
+      const glm::vec4 lit = to_vec4(decode(texels[i]));
+      texels[i] = optical_texel<Texel>(lit, optical_depth(lit.a));
+    }
   });
 }
 
 /// @param depths of the same bricks, or null for what each texel's opacity says by itself
-void convert(BrickVolume<DirectionalTexel>& volume, const BrickVolume<glm::vec3>* depths, float cell) {
-  const std::span<DirectionalTexel> texels = volume.texels();
-  parallel_for(texels.size(), grain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      for (size_t face = 0; face < 6; ++face) {
-        glm::vec4& texel = texels[i][face];
-        const float alone = optical_depth(texel.a);
-        const float depth = depths ? std::max(alone, depths->texels()[i][static_cast<int>(face / 2)]) : alone;
-        texel = extinction(texel, depth / cell);
-      }
-  });
-}
-
-/// The same volume with texels that decode `texel` finds for each.
-template <class To, class From, class Decode>
-BrickVolume<To> converted(const BrickVolume<From>& from, Decode&& decode_texel) {
-  BrickVolume<To> to(from.size());
-  to.allocate(from.bricks());
-  const std::span<const From> source = from.texels();
-  const std::span<To> target = to.texels();
-  parallel_for(source.size(), grain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) target[i] = decode_texel(source[i]);
-  });
-  return to;
-}
-
-/// The same pyramid in floats; the other's memory is freed level by level.
 template <class Texel>
-Pyramid in_floats(BasicPyramid<Texel>&& pyramid) {
-  const auto decoded = [](const Texel& texel) { return to_vec4(decode(texel)); };
-  Pyramid floats{pyramid.grid, converted<glm::vec4>(pyramid.base, decoded), {}};
-  pyramid.base = {};
-  for (BrickVolume<Directional<Texel>>& level : pyramid.levels) {
-    floats.levels.push_back(converted<DirectionalTexel>(level, [&](const Directional<Texel>& texel) {
-      DirectionalTexel faces;
-      for (size_t face = 0; face < faces.size(); ++face) faces[face] = decoded(texel[face]);
-      return faces;
-    }));
-    level = {};
-  }
-  return floats;
+void convert(BrickVolume<Directional<Texel>>& volume, const BrickVolume<glm::vec3>* depths) {
+  const std::span<Directional<Texel>> texels = volume.texels();
+  parallel_for(texels.size(), grain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      if (texels[i] == Directional<Texel>{}) continue;  // three of four
+      for (size_t face = 0; face < 6; ++face) {
+        const glm::vec4 lit = to_vec4(decode(texels[i][face]));
+        const float alone = optical_depth(lit.a);
+        const float depth = depths ? std::max(alone, depths->texels()[i][static_cast<int>(face / 2)]) : alone;
+        texels[i][face] = optical_texel<Texel>(lit, depth);
+      }
+    }
+  });
 }
 
 }  // namespace
 
-Medium make_medium(Pyramid16&& pyramid, MipmapFilter filter) {
-  return make_medium(in_floats(std::move(pyramid)), filter);
-}
-Medium make_medium(Pyramid8&& pyramid, MipmapFilter filter) {
-  return make_medium(in_floats(std::move(pyramid)), filter);
-}
-
-Medium make_medium(Pyramid&& pyramid, MipmapFilter filter) {
+template <class Texel>
+BasicMedium<Texel> make_medium(BasicPyramid<Texel>&& pyramid, MipmapFilter filter) {
   std::vector<BrickVolume<glm::vec3>> depths;
   if (filter == MipmapFilter::anisotropic) depths = optical_depths(pyramid);
-  Medium medium{std::move(pyramid)};
+  Occupancy occupied(pyramid);
+  BasicMedium<Texel> medium{std::move(pyramid), std::move(occupied)};
   convert(medium.texels.base);
   for (size_t k = 0; k < medium.texels.levels.size(); ++k)
-    convert(medium.texels.levels[k], depths.empty() ? nullptr : &depths[k], Medium::cell(static_cast<int>(k) + 1));
+    convert(medium.texels.levels[k], depths.empty() ? nullptr : &depths[k]);
   return medium;
 }
+
+template Medium make_medium(Pyramid&&, MipmapFilter);
+template Medium16 make_medium(Pyramid16&&, MipmapFilter);
+template Medium8 make_medium(Pyramid8&&, MipmapFilter);
 
 Medium make_opacity_medium(const SurfaceGrid& surfaces) {
   Medium medium;
@@ -97,6 +68,7 @@ Medium make_opacity_medium(const SurfaceGrid& surfaces) {
   base.allocate(occupied_bricks(surfaces));
   for (size_t i = 0; i < surfaces.size(); ++i)
     base(surfaces.voxels[i]) = {0.0f, 0.0f, 0.0f, optical_depth(surfaces.albedo[i].a)};
+  medium.occupied = Occupancy(medium.texels);
   return medium;
 }
 

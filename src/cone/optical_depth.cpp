@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cone/optical_texel.h"
 #include "parallel.h"
 
 namespace voxref {
@@ -29,9 +30,10 @@ float mean_depth(const Columns& columns) {
 }
 
 /// The level below, as depths.
+template <class Texel>
 struct Base {
-  const BrickVolume<glm::vec4>& texels;
-  float operator()(const glm::ivec3& v, int) const { return optical_depth(texels(v).a); }
+  const BrickVolume<Texel>& texels;
+  float operator()(const glm::ivec3& v, int) const { return optical_depth(decode_alpha(texels(v))); }
 };
 struct Level {
   const BrickVolume<glm::vec3>& depths;
@@ -65,8 +67,8 @@ float depth_along(const Below& below, const glm::ivec3& texel, int axis) {
 }
 
 /// @param bricks those that the level's texels have
-template <class Below>
-BrickVolume<glm::vec3> depths_of(const BrickVolume<DirectionalTexel>& level, const Below& below) {
+template <class Texel, class Below>
+BrickVolume<glm::vec3> depths_of(const BrickVolume<Directional<Texel>>& level, const Below& below) {
   using Depths = BrickVolume<glm::vec3>;
   Depths result(level.size());
   const std::vector<glm::ivec3> bricks = level.bricks();
@@ -77,7 +79,7 @@ BrickVolume<glm::vec3> depths_of(const BrickVolume<DirectionalTexel>& level, con
         for (int y = 0; y < Depths::side; ++y)
           for (int x = 0; x < Depths::side; ++x) {
             const glm::ivec3 texel = Depths::side * bricks[b] + glm::ivec3(x, y, z);
-            if (!level.contains(texel)) continue;
+            if (level(texel) == Directional<Texel>{}) continue;  // without opacity it has no depth either
             for (int axis = 0; axis < 3; ++axis) result(texel)[axis] = depth_along(below, texel, axis);
           }
   });
@@ -86,14 +88,17 @@ BrickVolume<glm::vec3> depths_of(const BrickVolume<DirectionalTexel>& level, con
 
 }  // namespace
 
-float optical_depth(float opacity) { return -std::log1p(-std::min(opacity, 1.0f - transparency_floor)); }
-
-std::vector<BrickVolume<glm::vec3>> optical_depths(const Pyramid& pyramid) {
+template <class Texel>
+std::vector<BrickVolume<glm::vec3>> optical_depths(const BasicPyramid<Texel>& pyramid) {
   std::vector<BrickVolume<glm::vec3>> depths;
-  for (const BrickVolume<DirectionalTexel>& level : pyramid.levels)
-    depths.push_back(depths.empty() ? depths_of(level, Base{pyramid.base})
+  for (const BrickVolume<Directional<Texel>>& level : pyramid.levels)
+    depths.push_back(depths.empty() ? depths_of(level, Base<Texel>{pyramid.base})
                                     : depths_of(level, Level{std::as_const(depths.back())}));
   return depths;
 }
+
+template std::vector<BrickVolume<glm::vec3>> optical_depths(const Pyramid&);
+template std::vector<BrickVolume<glm::vec3>> optical_depths(const Pyramid16&);
+template std::vector<BrickVolume<glm::vec3>> optical_depths(const Pyramid8&);
 
 }  // namespace voxref

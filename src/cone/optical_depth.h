@@ -6,12 +6,6 @@
 
 namespace voxref {
 
-/// No finite extinction is opaque: opacity is held below 1 by this much, so that an opaque texel transmits as much.
-inline constexpr float transparency_floor = 1e-4f;
-
-/// -ln(1 - opacity), at most -ln(transparency_floor); a NaN stays one.
-float optical_depth(float opacity);
-
 /// Optical depths of the texels of all levels along x, y and z, through their whole side, in Pyramid::levels' order.
 ///
 /// The filter (spec section 4) takes what texels behind each other cover for independent: front + back (1 - front). But
@@ -23,6 +17,7 @@ float optical_depth(float opacity);
 ///
 /// over the four columns of the level below, t being the sum of a column's two depths there. Only what is missing is
 /// added: where both cover the same columns (e < 0) a ray meets the second if it is not quite parallel to the axis.
-std::vector<BrickVolume<glm::vec3>> optical_depths(const Pyramid& pyramid);
+template <class Texel>
+std::vector<BrickVolume<glm::vec3>> optical_depths(const BasicPyramid<Texel>& pyramid);
 
 }  // namespace voxref

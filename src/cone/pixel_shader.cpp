@@ -83,9 +83,8 @@ PixelLight PixelShader::operator()(const GBufferPoint& point) const {
 // Raw cones start where the published shaders start them, whatever stands near.
 GatherPoint PixelShader::gather_point(const GBufferPoint& point) const {
   GatherPoint from{point.position, point.geometric_normal, point.normal};
-  if (const auto* medium = std::get_if<Medium>(&lit_.volume))
-    from.aside = clearance(lit_.scene, lit_.caster, point.position, point.geometric_normal, options_.cone,
-                           medium->texels.grid.voxel);
+  if (const std::optional<float> voxel = extinction_voxel(lit_.volume))
+    from.aside = clearance(lit_.scene, lit_.caster, point.position, point.geometric_normal, options_.cone, *voxel);
   return from;
 }
 

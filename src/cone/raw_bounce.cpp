@@ -37,7 +37,7 @@ glm::vec3 turned(const glm::mat3& frame, const Cone& cone) {
 
 template <class Texel>
 RawVoxelGatherer<Texel>::RawVoxelGatherer(const BasicPyramid<Texel>& pyramid, std::optional<float> max_distance)
-    : pyramid_(pyramid), cones_(voxel_cones(published_cones)) {
+    : pyramid_(pyramid), occupied_(pyramid), cones_(voxel_cones(published_cones)) {
   steps_ = steps_of(pyramid.grid, cones_.cones.front().tan_half_angle, pyramid.levels.size(), max_distance);
 }
 
@@ -59,7 +59,8 @@ glm::vec3 RawVoxelGatherer<Texel>::march(const glm::vec3& apex, const glm::vec3&
     const glm::vec3 p = apex + step.distance * direction;
     const bool first = &step == steps_.data();
     if (first && (glm::any(glm::lessThan(p, glm::vec3(0.0f))) || glm::any(glm::greaterThan(p, size)))) break;
-    gathered += (1.0f - gathered[3]) * sample_raw(pyramid_, p, step, read);
+    if (!occupied_(step.coarsest(), to_float4(p))) continue;
+    gathered += (1.0f - gathered[3]) * sample_raw(pyramid_, to_float4(p), step, read);
     if (gathered[3] > 1.0f) break;
   }
   return glm::vec3(to_vec4(gathered));

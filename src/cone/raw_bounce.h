@@ -24,6 +24,7 @@ class RawVoxelGatherer {
   glm::vec3 march(const glm::vec3& apex, const glm::vec3& direction) const;
 
   const BasicPyramid<Texel>& pyramid_;
+  Occupancy occupied_;
   ConeSet cones_;
   std::vector<ConeStep> steps_;  ///< distances in voxels
 };

@@ -11,7 +11,7 @@ namespace voxref {
 
 template <class Texel>
 RawGatherer<Texel>::RawGatherer(const BasicPyramid<Texel>& pyramid, ConeSet diffuse, const GatherOptions& options)
-    : pyramid_(pyramid), diffuse_(std::move(diffuse)), options_(options), empty_(pyramid.base) {
+    : pyramid_(pyramid), diffuse_(std::move(diffuse)), options_(options), occupied_(pyramid) {
   const Grid& grid = pyramid.grid;
   side_ = grid.voxel * static_cast<float>(std::max({grid.size.x, grid.size.y, grid.size.z}));
   unit_ = grid.voxel * options.cone.raw_unit;
@@ -42,8 +42,9 @@ template <class Texel>
 RawCone RawGatherer<Texel>::march(const GatherPoint& point, const glm::vec3& direction,
                                   const std::vector<ConeStep>& steps) const {
   if (misses_box(point, direction)) return {};
-  return march_raw(pyramid_, point.position + options_.cone.start * pyramid_.grid.voxel * point.geometric_normal,
-                   direction, steps);
+  return march_raw(pyramid_, occupied_,
+                   point.position + options_.cone.start * pyramid_.grid.voxel * point.geometric_normal, direction,
+                   steps);
 }
 
 template <class Texel>
@@ -74,7 +75,7 @@ float RawGatherer<Texel>::visibility(const GatherPoint& point, const Light& ligh
   const float end = light.type == LightType::directional ? side_ : lit.distance;
   const float gain = options_.shadow_tolerance == 1.0f ? std::numeric_limits<float>::infinity()
                                                        : std::exp2(7.0f * options_.shadow_tolerance);
-  return march_raw_shadow(pyramid_, empty_, point.position + unit_ * lit.to_light, lit.to_light, shadow_steps_, end,
+  return march_raw_shadow(pyramid_, occupied_, point.position + unit_ * lit.to_light, lit.to_light, shadow_steps_, end,
                           gain);
 }
 

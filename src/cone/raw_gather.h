@@ -43,7 +43,7 @@ class RawGatherer {
   float side_, unit_, end_;                           // the grid's longest side; w; where cones end; world units
   std::vector<std::vector<ConeStep>> diffuse_steps_;  // one per cone
   std::vector<ConeStep> shadow_steps_;
-  EmptySpace empty_;
+  Occupancy occupied_;
 };
 
 }  // namespace voxref

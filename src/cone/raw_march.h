@@ -2,7 +2,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "cone/empty_space.h"
+#include "cone/occupancy.h"
 #include "scene/scene.h"
 #include "voxel/mipmap.h"
 
@@ -10,9 +10,11 @@ namespace voxref {
 
 /// A sample of a cone whose texels grow with it.
 struct ConeStep {
-  float distance = 0.0f;   ///< from the march's start, world units
-  int level = 0;           ///< finer of the two levels that are mixed; 0 is the base, k is Pyramid::levels[k - 1]
-  float fraction = 0.0f;   ///< share of the coarser one, in [0,1)
+  float distance = 0.0f;  ///< from the march's start, world units
+  int level = 0;          ///< finer of the two levels that are mixed; 0 is the base, k is Pyramid::levels[k - 1]
+  float fraction = 0.0f;  ///< share of the coarser one, in [0,1)
+  /// Coarsest level that is read.
+  int coarsest() const { return level + (fraction > 0.0f); }
   float occlusion = 1.0f;  ///< what opacity here counts towards ambient occlusion, in (0,1]
 };
 
@@ -38,17 +40,16 @@ struct RawCone {
 /// Marches volumes as the published shaders do: opacity is interpolated as it is stored, a sample's opacity does not
 /// depend on the step's length, and what lies outside the volumes is their edge. At each sample C += (1 - a) c and
 /// a += (1 - a) alpha until a >= 1. Faces count with the direction's squared components.
-/// @param start world; distances count from it @param direction unit
+/// @param occupied of the pyramid @param start world; distances count from it @param direction unit
 template <class Texel>
-RawCone march_raw(const BasicPyramid<Texel>& pyramid, const glm::vec3& start, const glm::vec3& direction,
-                  const std::vector<ConeStep>& steps);
+RawCone march_raw(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const glm::vec3& start,
+                  const glm::vec3& direction, const std::vector<ConeStep>& steps);
 
 /// What a raw shadow cone lets through, in [0,1]: v += (1 - v) gain alpha until v >= 1, then 1 - v.
 /// @param end samples beyond this distance are not taken, world units
 /// @param gain infinity: any alpha above 1e-30 is black
-/// @param empty of pyramid.base
 template <class Texel>
-float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const EmptySpace& empty, const glm::vec3& start,
+float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const glm::vec3& start,
                        const glm::vec3& direction, const std::vector<ConeStep>& steps, float end, float gain);
 
 /// Whether a ray meets a box: the slab test of the published shaders, by which a ray that only grazes it does not.

@@ -57,6 +57,9 @@ class BrickVolume {
   }
   /// Slot of the brick at brick coordinates `b`, or `absent`.
   uint32_t slot(const glm::ivec3& b) const { return slots_[brick_index(b)]; }
+  /// Slots of all bricks, x fastest, then y, then z.
+  const uint32_t* slots() const { return slots_.data(); }
+  const Texel* data() const { return texels_.data(); }  ///< slot after slot
   /// The brick's texels. @param slot not `absent`
   std::span<const Texel, texels_per_brick> brick(uint32_t slot) const {
     return std::span<const Texel, texels_per_brick>(texels_.data() + slot * texels_per_brick, texels_per_brick);

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <limits>
 
-#include "cone/lookup.h"
+#include "voxel/floor.h"
 
 namespace voxref {
 

@@ -55,14 +55,15 @@ decltype(auto) with_texel(Storage storage, Visit&& visit) {
 /// bytes, which moves up to 9 % of the texels of filtered volumes by 1 (spec section 4).
 inline Float4 decode(const glm::vec4& texel) { return load(texel); }
 inline Float4 decode(const Rgba16f& texel) { return from_halves(texel.halves); }
-inline Float4 decode(const Rgba8& texel) {
-  constexpr float step = 1.0f / 255.0f;
+/// The four bytes as numbers to 255.
+inline Float4 decode_bytes(const Rgba8& texel) {
   int32_t packed;
   std::memcpy(&packed, texel.bytes.data(), sizeof packed);
   const __m128i zero = _mm_setzero_si128();
   const __m128i wide = _mm_unpacklo_epi16(_mm_unpacklo_epi8(_mm_cvtsi32_si128(packed), zero), zero);
-  return reinterpret_cast<Float4>(_mm_cvtepi32_ps(wide)) * step;
+  return reinterpret_cast<Float4>(_mm_cvtepi32_ps(wide));
 }
+inline Float4 decode(const Rgba8& texel) { return decode_bytes(texel) * (1.0f / 255.0f); }
 
 /// The fourth channel alone; the same bits.
 inline float decode_alpha(const glm::vec4& texel) { return texel.a; }

@@ -22,12 +22,13 @@ struct PlainMarch {
 
   glm::dvec4 texel(int level, const glm::ivec3& v, const glm::dvec3& d) const {
     if (level == 0) return glm::dvec4(medium.texels.base(v));
+    const double cell = std::exp2(level);  // depths are those of the whole cell
     const double sum_of_axes = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
     glm::dvec4 sum(0.0);
     for (int face = 0; face < 6; ++face) {
       const double along = (face % 2 ? 1.0 : -1.0) * d[face / 2];
       if (along > 0.0)
-        sum += along / sum_of_axes * glm::dvec4(medium.texels.levels[size_t(level - 1)](v)[size_t(face)]);
+        sum += along / sum_of_axes / cell * glm::dvec4(medium.texels.levels[size_t(level - 1)](v)[size_t(face)]);
     }
     return sum;
   }

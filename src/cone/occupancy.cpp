@@ -1,0 +1,143 @@
+#include "cone/occupancy.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace voxref {
+namespace {
+
+constexpr int side = BitBlocks::side;
+static_assert(side == BrickVolume<char>::side, "blocks of texels' bits are those of their bricks");
+
+glm::ivec3 block_at(const glm::ivec3& grid, int index) {
+  return {index % grid.x, index / grid.x % grid.y, index / grid.x / grid.y};
+}
+int count(const glm::ivec3& grid) { return grid.x * grid.y * grid.z; }
+
+/// Calls visit(block coordinates, block) for all that have bits.
+template <class Visit>
+void for_each_block(const BitBlocks& bits, Visit&& visit) {
+  for (int i = 0; i < count(bits.block_grid()); ++i) {
+    const glm::ivec3 at = block_at(bits.block_grid(), i);
+    if (const BitBlocks::Block* block = bits.find(at)) visit(at, BitBlocks::Block(*block));
+  }
+}
+
+/// Whether any bit is set: this asks no texel for its channels.
+template <class Texel>
+bool holds(const Texel& texel) {
+  static_assert(sizeof(Texel) % sizeof(uint32_t) == 0);
+  std::array<uint32_t, sizeof(Texel) / sizeof(uint32_t)> words;
+  std::memcpy(words.data(), &texel, sizeof(Texel));
+  uint32_t any = 0;
+  for (const uint32_t word : words) any |= word;
+  return any != 0;
+}
+
+/// Adds the texels that hold something.
+template <class Texel>
+void add_texels(const BrickVolume<Texel>& volume, BitBlocks& texels) {
+  for (int i = 0; i < count(volume.brick_grid()); ++i) {
+    const glm::ivec3 at = block_at(volume.brick_grid(), i);
+    const uint32_t slot = volume.slot(at);
+    if (slot == volume.absent) continue;
+    const Texel* texel = volume.brick(slot).data();
+    for (int z = 0; z < side; ++z) {
+      uint64_t slice = 0;
+      for (int bit = 0; bit < side * side; ++bit, ++texel) slice |= uint64_t{holds(*texel)} << bit;
+      texels.set(at, z, slice);
+    }
+  }
+}
+
+/// Texels of the next level that have any of these inside.
+void add_parents(const BitBlocks& fine, BitBlocks& coarse) {
+  constexpr uint64_t two_by_two = 0x0303;
+  for_each_block(fine, [&](const glm::ivec3& at, const BitBlocks::Block& block) {
+    const glm::ivec3 corner = at % 2 * (side / 2);  // of the eighth of the coarse block that the fine one fills
+    for (int z = 0; z < side; z += 2) {
+      const uint64_t both = block[size_t(z)] | block[size_t(z) + 1];
+      uint64_t slice = 0;
+      for (int y = 0; y < side; y += 2)
+        for (int x = 0; x < side; x += 2)
+          slice |= uint64_t{(both >> (x + side * y) & two_by_two) != 0}
+                   << (corner.x + x / 2 + side * (corner.y + y / 2));
+      coarse.set(at / 2, corner.z + z / 2, slice);
+    }
+  });
+}
+
+/// The cells that touch a texel: those of its own index and of the next along each axis.
+BitBlocks cells_around(const BitBlocks& texels, const glm::ivec3& size) {
+  BitBlocks cells(size + 1);
+  constexpr uint64_t not_first_column = 0xfefefefefefefefe, first_column = 0x0101010101010101;
+  const auto set_rows = [&](const glm::ivec3& block, int z, uint64_t slice) {
+    cells.set(block, z, slice | slice << side);
+    cells.set(block + glm::ivec3(0, 1, 0), z, slice >> (side * (side - 1)));
+  };
+  const auto set_slice = [&](const glm::ivec3& block, int z, uint64_t slice) {
+    set_rows(block, z, slice | (slice << 1 & not_first_column));
+    set_rows(block + glm::ivec3(1, 0, 0), z, slice >> (side - 1) & first_column);
+  };
+  for_each_block(texels, [&](const glm::ivec3& at, const BitBlocks::Block& block) {
+    for (int z = 0; z < side; ++z) set_slice(at, z, block[size_t(z)] | (z > 0 ? block[size_t(z) - 1] : 0));
+    set_slice(at + glm::ivec3(0, 0, 1), 0, block[side - 1]);
+  });
+  return cells;
+}
+
+template <class Texel>
+Float4 last_of(const BrickVolume<Texel>& volume) {
+  return to_float4(to_int4(volume.size()) - 1);
+}
+
+}  // namespace
+
+void BitBlocks::set(const glm::ivec3& block, int z, uint64_t bits) {
+  if (bits == 0 || block.x >= blocks_.x || block.y >= blocks_.y || block.z >= blocks_.z) return;
+  uint32_t& slot = slots_[index(block)];
+  if (slot == absent) {
+    slot = uint32_t(bits_.size());
+    bits_.emplace_back();
+  }
+  bits_[slot][size_t(z)] |= bits;
+}
+
+template <class Texel>
+Occupancy::Occupancy(const BasicPyramid<Texel>& pyramid) {
+  BitBlocks texels(pyramid.base.size());
+  add_texels(pyramid.base, texels);
+  levels_.push_back({last_of(pyramid.base), cells_around(texels, pyramid.base.size())});
+  for (const BrickVolume<Directional<Texel>>& level : pyramid.levels) {
+    BitBlocks coarse(level.size());
+    add_parents(texels, coarse);
+    add_texels(level, coarse);  // volumes that somebody else made may hold more than their parents do
+    levels_.push_back({last_of(level), cells_around(coarse, level.size())});
+    texels = std::move(coarse);
+  }
+}
+
+Occupancy::Gap Occupancy::gap(int level, const Float4& p, const Float4& way, const Float4& inverse) const {
+  while (level < top() && !(*this)(level + 1, p)) ++level;
+  constexpr float margin = 1e-3f;  // texels: rounding shall not carry a look-up into the next cell
+  const Float4 at = p * scale(level) - 0.5f;
+  const Float4 to_face =
+      (way > 0.0f ? Float4{} + (1.0f - margin) : Float4{} + margin) - (at - to_float4(floor_to_int(at)));
+  const Float4 lengths = way == 0.0f ? Float4{} + std::numeric_limits<float>::infinity() : to_face * inverse;
+  const float shortest = std::min(std::min(lengths[0], lengths[1]), lengths[2]);
+  return {std::max(shortest, 0.0f) / scale(level), level};
+}
+
+size_t Occupancy::bytes() const {
+  size_t total = 0;
+  for (const Level& level : levels_) total += level.cells.bytes();
+  return total;
+}
+
+template Occupancy::Occupancy(const BasicPyramid<glm::vec4>&);
+template Occupancy::Occupancy(const BasicPyramid<Rgba16f>&);
+template Occupancy::Occupancy(const BasicPyramid<Rgba8>&);
+
+}  // namespace voxref
