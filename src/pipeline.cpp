@@ -29,20 +29,30 @@ glm::vec3 mean_color(const Image& image) {
   return glm::vec3(sum / double(image.pixel_count()));
 }
 
-/// Two radiances per voxel (direct, and after the bounces) are held beside the surfaces and one pyramid.
+/// What surfaces and a pyramid hold. @param radiances per voxel: direct, and after the bounces
 template <class Texel>
-std::map<std::string, size_t> count_bytes(const SurfaceGrid& surfaces, const BasicPyramid<Texel>& pyramid,
-                                          size_t radiances) {
-  std::map<std::string, size_t> bytes;
+VolumeBytes count_bytes(const SurfaceGrid& surfaces, const BasicPyramid<Texel>& pyramid, size_t radiances) {
+  VolumeBytes bytes;
   bytes["surfaces"] = surfaces.bytes();
   bytes["radiance"] = radiances * surfaces.size() * sizeof(glm::vec3);
   bytes["visibility"] = surfaces.size() * sizeof(float);
   bytes["base"] = pyramid.base.bytes();
   for (const auto& level : pyramid.levels) bytes["levels"] += level.bytes();
-  size_t total = 0;
-  for (const auto& [volume, held] : bytes) total += held;
-  bytes["total"] = total;
   return bytes;
+}
+
+/// What cones need beside them.
+void count_bytes_beside(VolumeBytes& bytes, const LitVolume& volume) {
+  std::visit(
+      [&](const auto& v) {
+        if constexpr (requires { v.depth_bytes; }) {
+          bytes["occupancy"] = v.occupied.bytes();
+          bytes["depths"] = v.depth_bytes;
+        } else {
+          bytes["occupancy"] = Occupancy(v).bytes();
+        }
+      },
+      volume);
 }
 
 /// The stages between voxelization and image, with volumes of one storage.
@@ -90,6 +100,8 @@ LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, 
   result.volume = timed(seconds.cone_trace, [&] {
     return lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
   });
+  count_bytes_beside(result.bytes, result.volume);
+  add_total(result.bytes, settings);
   seconds.total = seconds_since(start);
   return result;
 }

@@ -1,11 +1,11 @@
 #pragma once
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 
 #include "cone/render.h"
 #include "settings.h"
+#include "volume_bytes.h"
 
 namespace voxref {
 
@@ -25,8 +25,7 @@ struct ConeTraceResult {
   double gain = 0.0;
   Clamping clamped_shade, clamped_bounce;  ///< radiance that `storage` could not hold: direct, and after the bounces
   StageSeconds seconds;
-  std::map<std::string, size_t>
-      bytes;  ///< per volume: surfaces, radiance, visibility, base, levels; `total` is the most held at once
+  VolumeBytes bytes;  ///< that were allocated
 };
 
 /// What images are gathered from: the voxels after light was brought to them, filtered and bounced.
@@ -39,7 +38,7 @@ struct LitVoxels {
   double gain = 0.0;
   Clamping clamped_shade, clamped_bounce;  ///< as ConeTraceResult's
   StageSeconds seconds;                    ///< cone_trace: of making the volume ready for marching; total: of all of it
-  std::map<std::string, size_t> bytes;     ///< as ConeTraceResult::bytes
+  VolumeBytes bytes;                       ///< as ConeTraceResult's
 };
 
 struct ConeTraceOutputs {

@@ -52,6 +52,7 @@ BasicMedium<Texel> make_medium(BasicPyramid<Texel>&& pyramid, MipmapFilter filte
   convert(medium.texels.base);
   for (size_t k = 0; k < medium.texels.levels.size(); ++k)
     convert(medium.texels.levels[k], depths.empty() ? nullptr : &depths[k]);
+  for (const BrickVolume<glm::vec3>& level : depths) medium.depth_bytes += level.bytes();
   return medium;
 }
 

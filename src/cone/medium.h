@@ -20,6 +20,7 @@ template <class Texel>
 struct BasicMedium {
   BasicPyramid<Texel> texels;  ///< optical ones
   Occupancy occupied;
+  size_t depth_bytes = 0;  ///< that optical_depths held while it was made
 
   /// Coarsest level that can be sampled; 0 is the base volume, k is texels.levels[k - 1].
   int top() const { return static_cast<int>(texels.levels.size()); }

@@ -85,12 +85,8 @@ BitBlocks cells_around(const BitBlocks& texels, const glm::ivec3& size) {
     for (int z = 0; z < side; ++z) set_slice(at, z, block[size_t(z)] | (z > 0 ? block[size_t(z) - 1] : 0));
     set_slice(at + glm::ivec3(0, 0, 1), 0, block[side - 1]);
   });
+  cells.shrink_to_fit();
   return cells;
-}
-
-template <class Texel>
-Float4 last_of(const BrickVolume<Texel>& volume) {
-  return to_float4(to_int4(volume.size()) - 1);
 }
 
 }  // namespace
@@ -105,16 +101,35 @@ void BitBlocks::set(const glm::ivec3& block, int z, uint64_t bits) {
   bits_[slot][size_t(z)] |= bits;
 }
 
+void Occupancy::add_level(const BitBlocks& texels, const glm::ivec3& size) {
+  levels_.push_back({to_float4(to_int4(size) - 1), cells_around(texels, size)});
+}
+
 template <class Texel>
 Occupancy::Occupancy(const BasicPyramid<Texel>& pyramid) {
   BitBlocks texels(pyramid.base.size());
   add_texels(pyramid.base, texels);
-  levels_.push_back({last_of(pyramid.base), cells_around(texels, pyramid.base.size())});
+  add_level(texels, pyramid.base.size());
   for (const BrickVolume<Directional<Texel>>& level : pyramid.levels) {
     BitBlocks coarse(level.size());
     add_parents(texels, coarse);
     add_texels(level, coarse);  // volumes that somebody else made may hold more than their parents do
-    levels_.push_back({last_of(level), cells_around(coarse, level.size())});
+    add_level(coarse, level.size());
+    texels = std::move(coarse);
+  }
+}
+
+Occupancy::Occupancy(const SurfaceGrid& surfaces) {
+  glm::ivec3 size = surfaces.grid.size;
+  BitBlocks texels(size);
+  for (const glm::ivec3& v : surfaces.voxels)
+    texels.set(v / side, v.z % side, uint64_t{1} << (v.x % side + side * (v.y % side)));
+  add_level(texels, size);
+  while (size != glm::ivec3(1)) {
+    size = (size + 1) / 2;
+    BitBlocks coarse(size);
+    add_parents(texels, coarse);
+    add_level(coarse, size);
     texels = std::move(coarse);
   }
 }

@@ -36,6 +36,7 @@ class BitBlocks {
   }
   /// Sets bits of a slice of a block. Those outside of the block table are dropped.
   void set(const glm::ivec3& block, int z, uint64_t bits);
+  void shrink_to_fit() { bits_.shrink_to_fit(); }
   size_t bytes() const { return slots_.capacity() * sizeof(uint32_t) + bits_.capacity() * sizeof(Block); }
 
  private:
@@ -57,6 +58,8 @@ class Occupancy {
   Occupancy() = default;
   template <class Texel>
   explicit Occupancy(const BasicPyramid<Texel>& pyramid);
+  /// Of a pyramid that is filtered from these surfaces.
+  explicit Occupancy(const SurfaceGrid& surfaces);
 
   /// Whether a look-up at p in this level, or in a finer one, may find something; texels at the border may go on for
   /// ever. @param level 0 is the base, k is BasicPyramid::levels[k - 1] @param p finite; voxels
@@ -82,6 +85,8 @@ class Occupancy {
   };
   static float scale(int level) { return 1.0f / static_cast<float>(1u << level); }
   int top() const { return static_cast<int>(levels_.size()) - 1; }
+  /// @param size texels
+  void add_level(const BitBlocks& texels, const glm::ivec3& size);
 
   std::vector<Level> levels_;
 };

@@ -15,6 +15,10 @@ struct PhongMaterial {
   glm::vec3 emission{0.0f};  ///< Ke, radiance
 };
 
+/// Share of the base colour that is Kd: all of it, but for what the metallic-roughness workflow makes a metal's Ks.
+/// @param metallic_texel metallic in [0,1], of its texture
+float diffuse_share(const Material& material, float metallic_texel);
+
 /// KHR_materials_pbrSpecularGlossiness holds Kd, Ks and s as they are. Metallic-roughness is converted as that
 /// extension says: Kd = base (1 - metallic), Ks = mix(0.04 x specular colour, base, metallic), s = 1 - roughness.
 /// @param decode_textures false: colour textures are taken as the file holds them, sRGB-encoded

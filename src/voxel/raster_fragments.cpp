@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "parallel.h"
+#include "scene/phong_material.h"
 #include "voxel/raster.h"
 
 namespace voxref {
@@ -59,11 +60,9 @@ class FragmentShader {
   glm::vec4 texture(const TextureBinding& binding, const glm::vec2& uv) const {
     return binding ? lookup(scene_.images[size_t(binding.image)], binding, uv) : glm::vec4(1.0f);
   }
-  /// Kd without its texture: of metals, which the published renderer does not know, what phong_material makes of them.
+  /// Kd without its texture.
   glm::vec3 diffuse(const Material& material, const glm::vec2& uv) const {
-    const glm::vec3 base(material.base_color);
-    if (material.workflow == Workflow::specular_glossiness) return base;
-    return base * (1.0f - material.metallic * texture(material.metallic_roughness_texture, uv).b);
+    return glm::vec3(material.base_color) * diffuse_share(material, texture(material.metallic_roughness_texture, uv).b);
   }
 
   const Scene& scene_;

@@ -155,6 +155,9 @@ TEST_CASE("with --json a command prints one object with the keys that scripts re
   CHECK(bench["scenes"][0]["ratio"]["min"] > 0);
   const json mesh = place.run_json("bench point.glb --mesh --rounds 1 --seconds 0.05" + small_cone);
   CHECK(mesh["scenes"][0]["scene"] == "point.glb with a mesh");
+  CHECK(bench["scenes"][0]["stages"].size() == 5);
+  for (const json& stage : bench["scenes"][0]["stages"]) CHECK(stage["count"] > 0);
+  CHECK(bench["triad_bytes_per_second"] > 0);
 }
 
 TEST_CASE("an error beyond the budget ends check with 1, one within it with 0", "[cli]") {

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "catch.h"
+#include "cone/optical_texel.h"
 #include "cone/volumes.h"
 
 using namespace voxref;

@@ -7,6 +7,7 @@
 
 #include "bench_mesh.h"
 #include "bench_rays.h"
+#include "bench_stages.h"
 #include "commands.h"
 #include "inputs.h"
 #include "json.h"
@@ -24,8 +25,9 @@ struct Options {
   ViewOptions view;
   SettingsOptions settings;
   int rounds = 5;
-  double seconds = 1.0;  ///< of path tracing per round
-  bool mesh = false;     ///< put one into each scene
+  double seconds = 1.0;                                ///< of path tracing per round
+  bool mesh = false;                                   ///< put one into each scene
+  std::string published = "../shared/gpu/cornell_64";  ///< folder of the published shaders' scene and settings
 };
 
 /// Several measurements of one thing.
@@ -47,7 +49,8 @@ struct SceneBench {
   Spread path, bare;           ///< million rays per second
   Spread ratio;                ///< path / bare of the same round
   double occlusion_share = 0;  ///< of the path tracer's rays, and of the bare loop's
-  StageSeconds stages;
+  std::vector<StageBench> stages;
+  LookupBench lookup;
 };
 
 /// A scene that has no light of its own gets a sun that stands 45 degrees high, so that there are shadow rays to cast.
@@ -105,7 +108,10 @@ SceneBench bench_scene(const std::string& file, const Options& options, const Se
   SceneBench bench;
   bench.scene = options.mesh ? file + " with a mesh" : file;
   bench_rays(bench, scene, caster, view, options, silent);
-  bench.stages = cone_trace(scene, caster, view, settings, {}, silent).seconds;
+  View base_test = view;  // the thesis's, table 4.3
+  if (!options.view.size) base_test.width = 1280, base_test.height = 720;
+  bench.stages = bench_stages(scene, caster, base_test, settings, std::min(options.rounds, 3), false, silent);
+  bench.lookup = bench_lookup(scene, settings);
   return bench;
 }
 
@@ -123,7 +129,7 @@ std::vector<std::string> default_scenes() {
   return {usual};
 }
 
-void say(Terminal& terminal, const SceneBench& bench) {
+void say(Terminal& terminal, const SceneBench& bench, double bandwidth) {
   const auto line = [&](const char* what, const Spread& s, const char* unit) {
     terminal.say(fmt::format("  {:<28} {:>8.3f}  ({:.3f} to {:.3f}){}", what, s.median, s.least, s.greatest, unit));
   };
@@ -132,15 +138,34 @@ void say(Terminal& terminal, const SceneBench& bench) {
   line("bare casting", bench.bare, " million rays/s");
   line("ratio", bench.ratio, "");
   terminal.say(fmt::format("  {:<28} {:>8.3f}", "occlusion rays / all rays", bench.occlusion_share));
-  const StageSeconds& s = bench.stages;
-  terminal.say(
-      fmt::format("  cone tracing                 voxelize {:.3f} s, shade {:.3f} s, mipmap {:.3f} s, bounce {:.3f} s, "
-                  "cone trace {:.3f} s",
-                  s.voxelize, s.shade, s.mipmap, s.bounce, s.cone_trace));
+  say(terminal, bench.stages, bandwidth);
+  terminal.say(fmt::format("  quadrilinear look-up {:.1f} ns, in the first cache {:.1f} ns, one thread",
+                           bench.lookup.volume, bench.lookup.bare));
 }
 
-void say_machine(Terminal& terminal, const std::string& cpu, int rounds) {
-  terminal.say(fmt::format("{}, {} threads; medians of {} rounds (least to greatest)", cpu, thread_count(), rounds));
+void say_machine(Terminal& terminal, const std::string& cpu, int rounds, double bandwidth) {
+  terminal.say(fmt::format("{}, {} threads, triad {:.1f} GB/s; medians of {} rounds (least to greatest)", cpu,
+                           thread_count(), 1e-9 * bandwidth, rounds));
+}
+
+/// The villegas2016 profile on the published shaders' scene, on one thread, where the folder is there.
+void bench_published(const Options& options, Terminal& terminal, nlohmann::json& result) {
+  const std::filesystem::path folder = options.published;
+  if (!std::filesystem::exists(folder / "scene.glb")) return;
+  const Settings settings =
+      make_settings({"villegas2016", (folder / "settings.json").string(), {"grid.resolution=256"}});
+  const Scene scene = load_scene({(folder / "scene.glb").string(), {}, {}}, terminal);
+  ViewOptions size;
+  size.size = glm::ivec2(256);
+  const ThreadLimit one(1);
+  const Caster caster(scene);
+  Progress silent = terminal.progress();
+  silent.report = nullptr;
+  const std::vector<StageBench> stages =
+      bench_stages(scene, caster, make_view(size, scene, cone_bytes_per_pixel), settings, options.rounds, true, silent);
+  terminal.say((folder / "scene.glb").string() + ", villegas2016 at 256 voxels, 256x256 pixels");
+  say_published(terminal, stages);
+  result["published"] = published_to_json(stages);
 }
 
 int run_bench(const Options& options) {
@@ -148,22 +173,24 @@ int run_bench(const Options& options) {
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const std::string cpu = cpu_model();
-  nlohmann::json result = {{"version", VOXREF_VERSION},
-                           {"cpu", cpu},
-                           {"threads", thread_count()},
-                           {"rounds", options.rounds},
-                           {"scenes", nlohmann::json::array()}};
+  const double bandwidth = triad_bandwidth();
+  nlohmann::json result = {{"version", VOXREF_VERSION}, {"cpu", cpu},
+                           {"threads", thread_count()}, {"triad_bytes_per_second", bandwidth},
+                           {"rounds", options.rounds},  {"scenes", nlohmann::json::array()}};
   for (const std::string& file : options.scenes.empty() ? default_scenes() : options.scenes) {
     const SceneBench bench = bench_scene(file, options, settings, terminal);
-    if (result["scenes"].empty()) say_machine(terminal, cpu, options.rounds);
-    say(terminal, bench);
+    if (result["scenes"].empty()) say_machine(terminal, cpu, options.rounds, bandwidth);
+    say(terminal, bench, bandwidth);
     result["scenes"].push_back({{"scene", bench.scene},
                                 {"path_million_rays_per_second", to_json(bench.path)},
                                 {"bare_million_rays_per_second", to_json(bench.bare)},
                                 {"ratio", to_json(bench.ratio)},
                                 {"occlusion_share", bench.occlusion_share},
-                                {"cone_seconds", to_json(bench.stages)}});
+                                {"stages", to_json(bench.stages, bandwidth)},
+                                {"lookup_nanoseconds", bench.lookup.volume},
+                                {"lookup_nanoseconds_in_cache", bench.lookup.bare}});
   }
+  bench_published(options, terminal, result);
   terminal.result(result);
   return exit_done;
 }
@@ -181,6 +208,10 @@ void add_bench(CLI::App& program, Run& run) {
       *command, "--seconds", "S", "of path tracing per round (default: 1)",
       [options](const std::string& text) { options->seconds = parse_number("--seconds", text, 0.01, 3600); });
   command->add_flag("--mesh", options->mesh, "puts a ball of about 70,000 triangles into each scene");
+  command
+      ->add_option("--published", options->published,
+                   "folder of the published shaders' scene (default: ../shared/gpu/cornell_64 where it is there)")
+      ->type_name("DIR");
   add_settings_options(*command, options->settings);
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
@@ -190,6 +221,11 @@ void add_bench(CLI::App& program, Run& run) {
       "in cosine-distributed directions (closest hit) from surface to surface, and from each to a light (occlusion),\n"
       "in the proportion in which the path tracer casts these two kinds. It calls Embree through the same thin class,\n"
       "one ray at a time. A scene without light gets a sun that stands 45 degrees high, for both.\n\n"
+      "The cone tracer's stages are those of the thesis's base test: 1280x720 pixels unless --size is given. Bytes "
+      "are\n"
+      "those that a stage takes and makes, each once; the triad is a[i] = b[i] + s c[i] over 192 MiB. Where the "
+      "published\n"
+      "shaders' scene is there, the same stages of villegas2016 on one core stand beside the published times.\n\n"
       "Examples:\n  voxref bench scenes/cornell_box.glb --rounds 9\n"
       "  voxref bench scenes/cornell_box_empty.glb --mesh");
   on_run(command, run, [options] { return run_bench(*options); });

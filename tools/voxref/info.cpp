@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <tuple>
 
 #include "commands.h"
 #include "inputs.h"
 #include "json.h"
 #include "parallel.h"
 #include "summary.h"
+#include "volume_bytes.h"
 
 namespace voxref {
 
@@ -19,70 +19,41 @@ constexpr std::array<int, 4> resolutions = {64, 128, 256, 512};
 struct Options {
   CommonOptions common;
   SceneOptions scene;
+  SettingsOptions settings;
 };
 
 /// What the pipeline would hold at one resolution.
 struct VolumeNeed {
   int resolution = 0;
   Grid grid;
-  size_t voxels = 0;    ///< occupied
-  size_t surfaces = 0;  ///< bytes of albedo, normal, centroid, emission
-  size_t radiance = 0;  ///< bytes of the voxels' radiance, direct and after the bounces
-  size_t base = 0;      ///< bytes of radiance and opacity, filtered
-  size_t levels = 0;    ///< bytes of all directional levels
-  size_t total() const { return surfaces + radiance + base + levels; }
+  size_t voxels = 0;  ///< occupied
+  VolumeBytes bytes;
 };
-
-/// Bytes of a volume with those of its bricks that hold one of `texels` (moved: it is sorted and thinned out here).
-template <class Texel>
-size_t volume_bytes(const glm::ivec3& size, std::vector<glm::ivec3> texels) {
-  using Volume = BrickVolume<Texel>;
-  for (glm::ivec3& t : texels) t /= Volume::side;
-  const auto before = [](const glm::ivec3& a, const glm::ivec3& b) {
-    return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
-  };
-  std::sort(texels.begin(), texels.end(), before);
-  const size_t bricks = static_cast<size_t>(std::unique(texels.begin(), texels.end()) - texels.begin());
-  const glm::ivec3 table = (size + Volume::side - 1) / Volume::side;
-  return bricks * Volume::texels_per_brick * sizeof(Texel) +
-         size_t(table.x) * size_t(table.y) * size_t(table.z) * sizeof(uint32_t);
-}
 
 /// The scene's shape alone: where surface is does not depend on textures but for the holes of masks, and filtering them
 /// takes nearly all the time.
 Scene without_textures(const Scene& scene) {
-  Scene plain;
-  plain.positions = scene.positions;
-  plain.normals = scene.normals;
-  plain.triangles = scene.triangles;
-  plain.triangle_materials = scene.triangle_materials;
-  plain.objects = scene.objects;
-  for (const Material& material : scene.materials) {
-    plain.materials.emplace_back();
-    plain.materials.back().emission = material.emission;  // whether there is any decides about a volume
+  Scene plain = scene;
+  const auto masked = [](const Material& material) { return material.alpha_mode == AlphaMode::mask; };
+  if (std::ranges::none_of(plain.materials, masked)) plain.colors = {};  // their alpha makes holes too
+  for (Material& material : plain.materials) {
+    const TextureBinding mask = masked(material) ? material.base_color_texture : TextureBinding();
+    Material shape;
+    shape.base_color = material.base_color;
+    shape.base_color_texture = mask;
+    shape.alpha_mode = material.alpha_mode;
+    shape.alpha_cutoff = material.alpha_cutoff;
+    shape.emission = material.emission;  // whether there is any decides about a volume
+    material = shape;
   }
   return plain;
 }
 
-VolumeNeed measure(const Scene& scene, int resolution, const Progress& progress) {
-  GridOptions options;
-  options.resolution = resolution;
-  const Grid grid = fit_grid(scene.bounds(), options);
-  const SurfaceGrid surfaces = voxelize(scene, grid, {}, progress);
-  VolumeNeed need;
-  need.resolution = resolution;
-  need.grid = grid;
-  need.voxels = surfaces.size();
-  need.surfaces = surfaces.bytes();
-  need.radiance = 2 * surfaces.size() * sizeof(glm::vec3);
-  need.base = volume_bytes<glm::vec4>(grid.size, surfaces.voxels);
-  std::vector<glm::ivec3> texels = surfaces.voxels;
-  for (glm::ivec3 size = grid.size; size != glm::ivec3(1);) {
-    size = (size + 1) / 2;
-    for (glm::ivec3& t : texels) t /= 2;
-    need.levels += volume_bytes<DirectionalTexel>(size, texels);
-  }
-  return need;
+VolumeNeed measure(const Scene& scene, Settings settings, int resolution, const Progress& progress) {
+  settings.grid.resolution = resolution;
+  const Grid grid = fit_grid(scene.bounds(), settings.grid);
+  const SurfaceGrid surfaces = voxelize(scene, grid, settings.voxelize, progress);
+  return {resolution, grid, surfaces.size(), predict_bytes(surfaces, settings)};
 }
 
 nlohmann::json describe(const VolumeNeed& need) {
@@ -90,12 +61,14 @@ nlohmann::json describe(const VolumeNeed& need) {
           {"grid", {need.grid.size.x, need.grid.size.y, need.grid.size.z}},
           {"voxel", need.grid.voxel},
           {"voxels_occupied", need.voxels},
-          {"bytes",
-           {{"surfaces", need.surfaces},
-            {"radiance", need.radiance},
-            {"base", need.base},
-            {"levels", need.levels},
-            {"total", need.total()}}}};
+          {"bytes", need.bytes}};
+}
+
+std::string bytes_of(const VolumeNeed& need) {
+  std::string text;
+  for (const auto& [volume, bytes] : need.bytes)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", volume, byte_count(bytes));
+  return text;
 }
 
 template <class Named>
@@ -128,19 +101,20 @@ void say(Terminal& terminal, const Scene& scene, const std::vector<VolumeNeed>& 
                                bounds.max.x, bounds.max.y, bounds.max.z));
   for (const VolumeNeed& n : needs)
     line(n.resolution == resolutions.front() ? "volumes" : "",
-         fmt::format("{:>4}: {}x{}x{}, {} voxels occupied; surfaces {}, radiance {}, base {}, levels {}, total {}",
-                     n.resolution, n.grid.size.x, n.grid.size.y, n.grid.size.z, n.voxels, byte_count(n.surfaces),
-                     byte_count(n.radiance), byte_count(n.base), byte_count(n.levels), byte_count(n.total())));
+         fmt::format("{:>4}: {}x{}x{}, {} voxels occupied; {}", n.resolution, n.grid.size.x, n.grid.size.y,
+                     n.grid.size.z, n.voxels, bytes_of(n)));
 }
 
 int run_info(const Options& options) {
+  const Settings settings = make_settings(options.settings);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
   std::vector<VolumeNeed> needs;
   needs.reserve(resolutions.size());
-  const Scene shape = without_textures(scene);
-  for (const int resolution : resolutions) needs.push_back(measure(shape, resolution, terminal.progress()));
+  // The published shaders look every texture up: a texel's alpha of 0 writes nothing.
+  const Scene shape = settings.voxelize.method == VoxelizeMethod::exact ? without_textures(scene) : scene;
+  for (const int resolution : resolutions) needs.push_back(measure(shape, settings, resolution, terminal.progress()));
   say(terminal, scene, needs);
 
   const Bounds bounds = scene.bounds();
@@ -168,10 +142,13 @@ void add_info(CLI::App& program, Run& run) {
   CLI::App* command = program.add_subcommand("info", "what is in a scene, and the memory that its volumes need");
   const auto options = std::make_shared<Options>();
   add_scene_options(*command, options->scene);
+  add_settings_options(*command, options->settings);
   add_common_options(*command, options->common);
   command->footer(
-      "The volumes are counted by voxelizing the scene at each resolution.\n\n"
-      "Example:\n  voxref info scenes/cornell_box.glb");
+      "The volumes are counted by voxelizing the scene at each resolution; `total` is the most that `voxref cone` "
+      "holds\n"
+      "of them at once with the same settings.\n\n"
+      "Example:\n  voxref info scenes/cornell_box.glb --set storage=float16");
   on_run(command, run, [options] { return run_info(*options); });
 }
 

@@ -1,0 +1,21 @@
+#pragma once
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "cone/gatherer.h"
+#include "settings.h"
+
+namespace voxref {
+
+/// Bytes of each volume: surfaces, radiance (direct, and after the bounces), visibility, base, levels (all directional
+/// ones), occupancy, depths (held while extinction is made ready); `total` is the most that is held at once.
+using VolumeBytes = std::map<std::string, size_t>;
+
+/// What the pipeline will allocate for these surfaces. Bricks follow from the occupied voxels alone.
+VolumeBytes predict_bytes(const SurfaceGrid& surfaces, const Settings& settings);
+
+/// Completes the sums over volumes.
+void add_total(VolumeBytes& bytes, const Settings& settings);
+
+}  // namespace voxref
