@@ -44,7 +44,8 @@ struct PixelSum {
 
 }  // namespace
 
-/// What a tile's waves need besides their pixels; kept from one to the next.
+/// What a tile's waves need besides their pixels; kept from tile to tile, because
+/// new memory is paid for page by page.
 struct PassRenderer::Room {
   Wave wave;
   std::vector<Ray> rays;
@@ -81,6 +82,8 @@ PassRenderer::PassRenderer(const Scene& scene, const Caster& caster, const View&
       done_(tiles_.size(), 1),
       counts_(tiles_.size()),
       finished_(tiles_.size()) {}
+
+PassRenderer::~PassRenderer() = default;
 
 void PassRenderer::begin(const Pass& pass) {
   pass_ = pass;
@@ -132,13 +135,27 @@ bool PassRenderer::render_tile(size_t tile, const Progress& progress, PassCounts
     pixels.emplace_back(x, y);
     return true;
   });
-  const auto room = std::make_unique_for_overwrite<Room>();
+  std::unique_ptr<Room> room = take_room();
   const size_t at_once = std::max<size_t>(1, Wave::most_paths / static_cast<size_t>(pass_.samples));
   for (size_t first = 0; first < pixels.size(); first += at_once) {
     if (progress.cancelled()) return false;
     render_pixels(std::span(pixels).subspan(first, std::min(at_once, pixels.size() - first)), *room, counts);
   }
+  give_back(std::move(room));
   return true;
+}
+
+std::unique_ptr<PassRenderer::Room> PassRenderer::take_room() {
+  const std::lock_guard lock(idle_rooms_lock_);
+  if (idle_rooms_.empty()) return std::make_unique_for_overwrite<Room>();
+  std::unique_ptr<Room> room = std::move(idle_rooms_.back());
+  idle_rooms_.pop_back();
+  return room;
+}
+
+void PassRenderer::give_back(std::unique_ptr<Room> room) {
+  const std::lock_guard lock(idle_rooms_lock_);
+  idle_rooms_.push_back(std::move(room));
 }
 
 /// All samples of some pixels. Where one pixel's are too many for a wave, they come in several.

@@ -5,7 +5,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
-#include <optional>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -60,6 +61,7 @@ class PassRenderer {
   PassRenderer(const Scene& scene, const Caster& caster, const View& view, const Transport& transport, uint64_t seed,
                const ExtraLayers& extra = {}, const Part& part = {});
   PassRenderer(const PassRenderer&) = delete;  // its parts refer to one another
+  ~PassRenderer();
 
   void begin(const Pass& pass);
   /// Renders what is left of the pass; the same bits whatever the number of threads, and however often it is called.
@@ -82,6 +84,8 @@ class PassRenderer {
 
  private:
   struct Room;
+  std::unique_ptr<Room> take_room();
+  void give_back(std::unique_ptr<Room> room);
   /// False when it was cancelled: asked at every wave, because a tile of many samples takes seconds.
   bool render_tile(size_t tile, const Progress& progress, PassCounts& counts);
   void render_pixels(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts);
@@ -109,6 +113,9 @@ class PassRenderer {
   std::vector<uint8_t> done_;       // per tile of the part
   std::vector<PassCounts> counts_;  // per tile of the part
   std::atomic<size_t> finished_;    // number of tiles
+
+  std::mutex idle_rooms_lock_;
+  std::vector<std::unique_ptr<Room>> idle_rooms_;
 };
 
 }  // namespace voxref
