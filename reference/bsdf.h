@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "reference/lanes.h"
 #include "reference/warp.h"
 #include "scene/reflectance_inline.h"
 #include "scene/surface.h"
@@ -26,10 +27,6 @@ struct BsdfSample {
 float specular_share_of(const Reflectance& reflectance, float n_out);
 inline float specular_share(const Reflectance& reflectance, float n_out) {
   return reflectance.has_specular() ? specular_share_of(reflectance, n_out) : 0.0f;
-}
-
-inline glm::vec3 select(bool condition, const glm::vec3& yes, const glm::vec3& no) {
-  return {condition ? yes.x : no.x, condition ? yes.y : no.y, condition ? yes.z : no.z};
 }
 
 /// Light scattered at a surface point towards one direction. Its values are those of evaluate(); this class adds how to

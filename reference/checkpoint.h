@@ -62,7 +62,8 @@ class StateReader {
 void write_checkpoint(const CheckpointOptions& options, const std::function<void(StateWriter&)>& write);
 
 /// Reads one into `read`. @returns false when there is no file
-/// @throws Error with the path: not a checkpoint, damaged, or of another render, naming what differs
+/// @throws Error with the path: not a checkpoint, damaged (its last bytes are the SHA-256 of the others), or of another
+/// render, naming what differs
 bool read_checkpoint(const CheckpointOptions& options, const std::function<void(StateReader&)>& read);
 
 }  // namespace voxref

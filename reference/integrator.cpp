@@ -19,7 +19,7 @@ constexpr uint32_t dimensions_per_vertex = 5;
 // Russian roulette keeps paths from carrying much less than half of what they set out with: survival is twice the
 // throughput's largest channel. Measured on the Cornell box, roulette at a half gives 10 to 20 % less squared error in
 // the same time than at one. It spares the first bounce, which most images consist of. Between perfectly white walls a
-// path would never end; from the 32nd surface on every one loses at least 2 %.
+// path would never end; from the 33rd surface on every one loses at least 2 %.
 constexpr float least_throughput = 0.5f;
 constexpr int long_path = 32;
 constexpr float most_survival_of_long = 0.98f;
@@ -245,7 +245,7 @@ void Integrator::go_on(Wave& wave) const {
 
 /// Where a ray from the vertex begins.
 glm::vec3 Integrator::leave(const Vertices& vertices, size_t i) const {
-  return vertices.positions()[i] + caster_.surface_offset() * vertices.geometric_normals()[i];
+  return caster_.beside(vertices.positions()[i], vertices.geometric_normals()[i]);
 }
 
 }  // namespace voxref

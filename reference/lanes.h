@@ -35,4 +35,9 @@ struct Lanes3 {
   }
 };
 
+/// Per component, because a whole vector chosen by address keeps a loop from being done side by side.
+inline glm::vec3 select(bool condition, const glm::vec3& yes, const glm::vec3& no) {
+  return {condition ? yes.x : no.x, condition ? yes.y : no.y, condition ? yes.z : no.z};
+}
+
 }  // namespace voxref

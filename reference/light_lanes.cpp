@@ -47,7 +47,7 @@ VOXREF_WIDEST void LightSampler::sample_few_emitters(const Vertices& vertices, c
     const Emitter emitter = emitters_[index];
 #pragma GCC ivdep
     for (size_t i = 0; i < count; ++i) {
-      const LightChoice choice = table.choose(unit_float(x[i]));
+      const LightChoice choice = table.choose(x[i]);
       const glm::vec2 uv = uniform_triangle({choice.rest, unit_float(y[i])});
       const EmitterSample sample = sample_point(emitter, choice.probability, uv, positions[i]);
       const bool chosen = first | (choice.index == index);

@@ -132,9 +132,9 @@ std::optional<PunctualSample> LightSampler::sample_few(const Receiver& receiver,
   }
   if (total == 0.0f) return std::nullopt;  // a NaN goes on, to be counted
   size_t chosen = 0;
-  for (float left = unit_float(bits) * total; chosen + 1 < count; ++chosen) {
+  for (double left = bits * 0x1p-32 * total; chosen + 1 < count; ++chosen) {
     left -= weights[chosen];
-    if (left < 0.0f) break;
+    if (left < 0.0) break;
   }
   while (chosen > 0 && weights[chosen] == 0.0f) --chosen;  // rounding ran past the last light that gives something
   const Illumination& light = lights[chosen];
@@ -162,7 +162,7 @@ std::optional<PunctualSample> LightSampler::sample_many(const Receiver& receiver
 
 std::optional<EmitterSample> LightSampler::sample_emitter(const Receiver& receiver, const glm::uvec2& bits) const {
   const std::optional<LightChoice> choice =
-      few_emitters() ? emitter_table_.choose(unit_float(bits.x)) : emitter_tree_.choose(receiver, bits.x * 0x1p-32);
+      few_emitters() ? emitter_table_.choose(bits.x) : emitter_tree_.choose(receiver, bits.x * 0x1p-32);
   if (!choice) return std::nullopt;
   const Emitter& emitter = emitters_[choice->index];
   const glm::vec2 uv = uniform_triangle({choice->rest, unit_float(bits.y)});

@@ -16,6 +16,8 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr int bin_count = 12;
 // From here on groups are cut in halves, so that a way down fits in the bits of a trail: 2^24 lights more.
 constexpr int most_uneven_depth = 40;
+// Of one of two groups that both give something: a step of the numbers just below 1.
+constexpr float least_share = 0x1p-24f;
 
 Bounds joined(Bounds a, const Bounds& b) {
   if (b.empty()) return a;
@@ -139,11 +141,17 @@ LightTable::LightTable(std::span<const float> intensities) {
   assert(!intensities.empty() && intensities.size() <= most_lights);
   double total = 0.0, before = 0.0;
   for (const float intensity : intensities) total += intensity;
-  begin_.fill(std::numeric_limits<float>::infinity());  // of those that there are not
+  constexpr double numbers = nowhere;
+  begin_.fill(nowhere);
+  const auto count = static_cast<double>(intensities.size());
+  double end = 0.0;  // of the numbers given so far
   for (size_t i = 0; i < intensities.size(); ++i) {
-    probability_[i] = static_cast<float>(intensities[i] / total);
-    begin_[i] = static_cast<float>(before / total);
+    begin_[i] = static_cast<uint32_t>(end);
     before += intensities[i];
+    const double left_for_others = count - 1.0 - static_cast<double>(i);
+    const double begin = end;
+    end = std::clamp(std::round(before / total * numbers), begin + 1.0, numbers - left_for_others);
+    probability_[i] = static_cast<float>((end - begin) / numbers);
   }
 }
 
@@ -189,7 +197,10 @@ float LightTree::first_share(uint32_t node, const Receiver& receiver) const {
   const Node &one = nodes_[node + 1], &other = nodes_[nodes_[node].next];
   const float first = irradiance(one, receiver);
   const float second = irradiance(other, receiver);
-  return first + second > 0.0f ? first / (first + second) : -1.0f;
+  if (!(first + second > 0.0f)) return -1.0f;
+  const float share = first / (first + second);
+  // Rounding must not take from one of two that both give something all its chance.
+  return first > 0.0f && second > 0.0f ? std::clamp(share, least_share, 1.0f - least_share) : share;
 }
 
 std::optional<LightChoice> LightTree::choose(const Receiver& receiver, double u) const {

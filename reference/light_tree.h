@@ -43,22 +43,29 @@ class LightTable {
   /// @param intensities at most most_lights, each above 0
   explicit LightTable(std::span<const float> intensities);
 
-  /// @param u uniform in [0,1)
-  LightChoice choose(float u) const {
-    uint32_t index = 0;
-    float begin = 0.0f, probability = probability_[0];
+  /// @param bits uniform 32-bit number
+  LightChoice choose(uint32_t bits) const {
+    const uint32_t u = std::min(bits, nowhere - 1);
+    uint32_t index = 0, begin = 0;
+    float probability = probability_[0];
     for (uint32_t light = 1; light < most_lights; ++light) {
       const bool beyond = u >= begin_[light];
       index = beyond ? light : index;
       begin = beyond ? begin_[light] : begin;
       probability = beyond ? probability_[light] : probability;
     }
-    return {index, probability, std::min((u - begin) / probability, 0x1.fffffep-1f)};
+    // Halved, the distance fits a signed number, which alone is converted in one instruction.
+    const float beyond_begin = static_cast<float>(static_cast<int32_t>((u - begin) >> 1)) * 0x1p-31f;
+    return {index, probability, std::min(beyond_begin / probability, 0x1.fffffep-1f)};
   }
   float probability(uint32_t light) const { return probability_[light]; }
 
  private:
-  std::array<float, most_lights> begin_{}, probability_{};  // of each light's part of [0,1)
+  static constexpr uint32_t nowhere = 0xffffffff;  // begin of lights that there are not
+  // Each light has the numbers from its begin up to the next one's, and at least one. Its probability is
+  // their share, so that what is said is what is drawn, however faint the light.
+  std::array<uint32_t, most_lights> begin_{};
+  std::array<float, most_lights> probability_{};
 };
 
 /// Chooses among many lights about in proportion to what each would give a receiver, shadows left out: a binary tree
@@ -81,8 +88,6 @@ class LightTree {
   float probability(uint32_t light, const Receiver& receiver) const;
   /// Estimate of the irradiance that all lights together give, W/m^2 of luminance.
   float irradiance(const Receiver& receiver) const;
-
-  bool empty() const { return nodes_.empty(); }
 
  private:
   /// Of a group, as irradiance() needs it.

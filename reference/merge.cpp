@@ -12,6 +12,7 @@ namespace voxref {
 namespace {
 
 constexpr const char* part_attribute = "voxref:part";
+constexpr const char* spp_attribute = "voxref:part_spp";
 constexpr const char* render_attribute = "voxref:render";
 
 std::string name_of(const Part& part) {
@@ -32,14 +33,14 @@ void visit_pixels(const Image& image, const Part& part, const Visit& visit) {
   for (const size_t tile : tiles.tiles_of(part))
     tiles.visit_pixels(tile, [&](int x, int y) {
       visit(static_cast<size_t>(y) * static_cast<size_t>(image.width()) + static_cast<size_t>(x));
-      return true;
     });
 }
 
 }  // namespace
 
-void mark_part(Image& image, const Part& part, const std::string& render) {
+void mark_part(Image& image, const Part& part, int spp, const std::string& render) {
   image.attributes[part_attribute] = std::to_string(part.index) + "/" + std::to_string(part.count);
+  image.attributes[spp_attribute] = std::to_string(spp);
   image.attributes[render_attribute] = render;
   const std::span<float> channel = image.channel("samples");
   std::vector<float> samples(channel.size(), 0.0f);
@@ -63,6 +64,7 @@ void PartMerger::add(const std::string& file, const Image& image) {
     for (const std::string& name : image.channels()) image_.add(name);
     image_.attributes = image.attributes;
     render_ = attribute(file, image, render_attribute);
+    spp_ = attribute(file, image, spp_attribute);
     count_ = part->count;
     first_file_ = file;
   }
@@ -86,17 +88,16 @@ void PartMerger::add(const std::string& file, const Image& image) {
 }
 
 Image PartMerger::finish() {
-  float most = 0.0f;
-  for (const auto& [index, added] : parts_) most = std::max(most, added.samples);
   for (int index = 1; index <= count_; ++index) {
     const auto part = parts_.find(index);
     if (part == parts_.end()) throw Error("merge", name_of({index, count_}) + " is missing");
-    if (part->second.samples != most)
+    const std::string samples = std::to_string(static_cast<int>(part->second.samples));
+    if (samples != spp_)
       throw Error(part->second.file, name_of({index, count_}),
-                  "was stopped at " + std::to_string(static_cast<int>(part->second.samples)) + " samples of " +
-                      std::to_string(static_cast<int>(most)) + "; path --resume finishes it");
+                  "was stopped at " + samples + " samples of " + spp_ + "; path --resume finishes it");
   }
   image_.attributes.erase(part_attribute);
+  image_.attributes.erase(spp_attribute);
   return std::move(image_);
 }
 

@@ -7,12 +7,13 @@
 
 namespace voxref {
 
-// Parts are images like any other: outside their tiles all channels, `samples` too, are zero. Two attributes of the
-// header say what they belong to: "voxref:part", I/N, and "voxref:render", what the image depends on, a JSON object.
+// Parts are images like any other: outside their tiles all channels, `samples` too, are zero. Three attributes of the
+// header say what they belong to: "voxref:part", I/N; "voxref:part_spp", how many samples it has once it is finished;
+// "voxref:render", what the image depends on, a JSON object.
 
 /// Marks a part: attributes as above, and no samples outside its tiles.
-/// @param render JSON object; equal for all parts of an image
-void mark_part(Image& image, const Part& part, const std::string& render);
+/// @param spp samples per pixel of the finished part @param render JSON object; equal for all parts of an image
+void mark_part(Image& image, const Part& part, int spp, const std::string& render);
 
 /// Joins all parts of an image to the bits of a single render. Holds one image however many parts there are.
 class PartMerger {
@@ -34,6 +35,7 @@ class PartMerger {
   void require_same_render(const std::string& file, const Image& part) const;
 
   std::string render_;
+  std::string spp_;
   int count_ = 0;
   std::string first_file_;
   std::map<int, Added> parts_;  // by index

@@ -86,6 +86,7 @@ PassRenderer::PassRenderer(const Scene& scene, const Caster& caster, const View&
 PassRenderer::~PassRenderer() = default;
 
 void PassRenderer::begin(const Pass& pass) {
+  assert(pass.samples >= 1 && static_cast<size_t>(pass.samples) <= Wave::most_paths);
   pass_ = pass;
   std::fill(done_.begin(), done_.end(), uint8_t{0});
   finished_ = 0;
@@ -131,12 +132,9 @@ void PassRenderer::load(StateReader& reader) {
 
 bool PassRenderer::render_tile(size_t tile, const Progress& progress, PassCounts& counts) {
   std::vector<glm::ivec2> pixels;
-  grid_.visit_pixels(tile, [&](int x, int y) {
-    pixels.emplace_back(x, y);
-    return true;
-  });
+  grid_.visit_pixels(tile, [&](int x, int y) { pixels.emplace_back(x, y); });
   std::unique_ptr<Room> room = take_room();
-  const size_t at_once = std::max<size_t>(1, Wave::most_paths / static_cast<size_t>(pass_.samples));
+  const size_t at_once = Wave::most_paths / static_cast<size_t>(pass_.samples);
   for (size_t first = 0; first < pixels.size(); first += at_once) {
     if (progress.cancelled()) return false;
     render_pixels(std::span(pixels).subspan(first, std::min(at_once, pixels.size() - first)), *room, counts);
@@ -147,7 +145,7 @@ bool PassRenderer::render_tile(size_t tile, const Progress& progress, PassCounts
 
 std::unique_ptr<PassRenderer::Room> PassRenderer::take_room() {
   const std::lock_guard lock(idle_rooms_lock_);
-  if (idle_rooms_.empty()) return std::make_unique_for_overwrite<Room>();
+  if (idle_rooms_.empty()) return std::make_unique<Room>();
   std::unique_ptr<Room> room = std::move(idle_rooms_.back());
   idle_rooms_.pop_back();
   return room;
@@ -158,13 +156,14 @@ void PassRenderer::give_back(std::unique_ptr<Room> room) {
   idle_rooms_.push_back(std::move(room));
 }
 
-/// All samples of some pixels. Where one pixel's are too many for a wave, they come in several.
+/// One wave: all samples of some pixels.
 void PassRenderer::render_pixels(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts) {
   room.sums.assign(pixels.size(), {});
   room.extra.assign(pixels.size() * extra_.count(), glm::dvec3(0.0));
-  const int most = std::max(1, static_cast<int>(Wave::most_paths / pixels.size()));
-  for (int first = 0; first < pass_.samples; first += most)
-    render_samples(pixels, first, std::min(most, pass_.samples - first), room, counts);
+  see(pixels, room, counts.paths);
+  integrator_.trace(room.starts, room.wave, counts.paths);
+  add_found(pixels, room, counts);
+  if (extra_.irradiance) add_irradiance(pixels, room, counts);
   for (size_t i = 0; i < pixels.size(); ++i) {
     const size_t pixel = index(pixels[i]);
     batches_[pixel] = room.sums[i].mean(pass_.samples);
@@ -174,29 +173,30 @@ void PassRenderer::render_pixels(std::span<const glm::ivec2> pixels, Room& room,
   }
 }
 
-/// One wave: the same samples of each pixel.
-void PassRenderer::render_samples(std::span<const glm::ivec2> pixels, int first, int samples, Room& room,
-                                  PassCounts& counts) const {
-  see(pixels, first, samples, room, counts.paths);
-  integrator_.trace(room.starts, room.wave, counts.paths);
-  size_t path = 0;
-  for (size_t i = 0; i < pixels.size(); ++i)
-    for (int sample = first; sample < first + samples; ++sample, ++path) {
-      const PathSample& found = room.wave.samples()[path];
-      room.sums[i].add(found.layers);
-      if (const PathVertex* seen = room.starts[path].seen)
-        room.sums[i].add(seen->surface, glm::dot(seen->surface.position - rays_.eye(), rays_.forward()));
-      if (found.nonfinite > 0)
-        counts.first_nonfinite =
-            std::min(counts.first_nonfinite, SamplePlace{index(pixels[i]), pass_.samples_before + sample});
-      for (size_t bounce = 0; bounce < static_cast<size_t>(extra_.bounces); ++bounce)
-        room.extra[i * extra_.count() + bounce] += glm::dvec3(room.wave.bounces(path)[bounce]);
-    }
-  if (extra_.irradiance) add_irradiance(static_cast<size_t>(samples), room, counts.paths);
+void PassRenderer::add_found(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts) const {
+  for (size_t path = 0; path < room.starts.size(); ++path) {
+    const size_t pixel = path / static_cast<size_t>(pass_.samples);
+    room.sums[pixel].add(room.wave.samples()[path].layers);
+    if (const PathVertex* seen = room.starts[path].seen)
+      room.sums[pixel].add(seen->surface, glm::dot(seen->surface.position - rays_.eye(), rays_.forward()));
+    for (size_t bounce = 0; bounce < static_cast<size_t>(extra_.bounces); ++bounce)
+      room.extra[pixel * extra_.count() + bounce] += glm::dvec3(room.wave.bounces(path)[bounce]);
+  }
+  place_nonfinite(pixels, room, counts);
+}
+
+/// Of the wave that was traced last.
+void PassRenderer::place_nonfinite(std::span<const glm::ivec2> pixels, const Room& room, PassCounts& counts) const {
+  const auto samples = static_cast<size_t>(pass_.samples);
+  for (size_t path = 0; path < room.starts.size(); ++path)
+    if (room.wave.samples()[path].nonfinite > 0)
+      counts.first_nonfinite =
+          std::min(counts.first_nonfinite,
+                   SamplePlace{index(pixels[path / samples]), pass_.samples_before + static_cast<int>(path % samples)});
 }
 
 /// The camera's rays. All samples of a pixel's centre see the same point, and there is one ray for all of them.
-void PassRenderer::aim(std::span<const glm::ivec2> pixels, size_t samples, Room& room) const {
+void PassRenderer::aim(std::span<const glm::ivec2> pixels, Room& room) const {
   room.rays.clear();
   if (view_.pixel == PixelSampling::center) {
     for (const glm::ivec2& pixel : pixels) room.rays.push_back(rays_(glm::vec2(pixel) + 0.5f));
@@ -206,20 +206,20 @@ void PassRenderer::aim(std::span<const glm::ivec2> pixels, size_t samples, Room&
   for (const PathStart& start : room.starts) room.samplers.add(start.sampler);
   room.samplers.bits_2d(0, room.x, room.y);
   for (size_t i = 0; i < room.starts.size(); ++i)
-    room.rays.push_back(rays_(glm::vec2(pixels[i / samples]) + unit_floats({room.x[i], room.y[i]})));
+    room.rays.push_back(
+        rays_(glm::vec2(pixels[i / static_cast<size_t>(pass_.samples)]) + unit_floats({room.x[i], room.y[i]})));
 }
 
 /// Begins paths at what the camera sees.
-void PassRenderer::see(std::span<const glm::ivec2> pixels, int first, int samples, Room& room,
-                       PathCounts& counts) const {
+void PassRenderer::see(std::span<const glm::ivec2> pixels, Room& room, PathCounts& counts) const {
   room.starts.clear();
   for (const glm::ivec2& pixel : pixels) {
     const uint64_t key = randomization_key(seed_, static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y),
                                            static_cast<uint32_t>(pass_.number));
-    for (int sample = first; sample < first + samples; ++sample)
+    for (int sample = 0; sample < pass_.samples; ++sample)
       room.starts.push_back({nullptr, Sampler(key, static_cast<uint32_t>(sample))});
   }
-  aim(pixels, static_cast<size_t>(samples), room);
+  aim(pixels, room);
   room.hits.resize(room.rays.size());
   caster_.closest(room.rays, room.hits);
   counts.closest_rays += room.rays.size();
@@ -237,7 +237,7 @@ void PassRenderer::see(std::span<const glm::ivec2> pixels, int first, int sample
 
 /// Irradiance is pi times what the surface would scatter if it were white and Lambertian, whose BSDF is 1 / pi: a
 /// second path with the same random numbers, which leaves the first as it is without.
-void PassRenderer::add_irradiance(size_t samples, Room& room, PathCounts& counts) const {
+void PassRenderer::add_irradiance(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts) const {
   room.white = room.seen;
   for (PathVertex& vertex : room.white) {
     vertex.surface.reflectance = Reflectance{};
@@ -245,16 +245,14 @@ void PassRenderer::add_irradiance(size_t samples, Room& room, PathCounts& counts
   }
   for (PathStart& start : room.starts)
     if (start.seen) start.seen = &room.white[static_cast<size_t>(start.seen - room.seen.data())];
-  PathCounts own;  // what is not finite here was not so in the path itself, and is counted there
-  integrator_.trace(room.starts, room.wave, own);
+  integrator_.trace(room.starts, room.wave, counts.paths);
+  place_nonfinite(pixels, room, counts);
   for (size_t path = 0; path < room.starts.size(); ++path) {
     if (!room.starts[path].seen) continue;
     const Layers& scattered = room.wave.samples()[path].layers;
-    room.extra[(path / samples + 1) * extra_.count() - 1] +=
+    room.extra[(path / static_cast<size_t>(pass_.samples) + 1) * extra_.count() - 1] +=
         std::numbers::pi * (glm::dvec3(scattered.direct) + glm::dvec3(scattered.indirect));
   }
-  counts.closest_rays += own.closest_rays;
-  counts.occlusion_rays += own.occlusion_rays;
 }
 
 }  // namespace voxref

@@ -49,7 +49,7 @@ struct PassCounts {
 /// Which samples a pass takes at every pixel.
 struct Pass {
   int number = 0;          ///< of the randomization
-  int samples = 1;         ///< points of it
+  int samples = 1;         ///< points of it, at most Wave::most_paths
   int samples_before = 0;  ///< taken by earlier passes
 };
 
@@ -86,13 +86,14 @@ class PassRenderer {
   struct Room;
   std::unique_ptr<Room> take_room();
   void give_back(std::unique_ptr<Room> room);
-  /// False when it was cancelled: asked at every wave, because a tile of many samples takes seconds.
+  /// False when it was cancelled: asked before every wave, because a tile of many samples takes seconds.
   bool render_tile(size_t tile, const Progress& progress, PassCounts& counts);
   void render_pixels(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts);
-  void render_samples(std::span<const glm::ivec2> pixels, int first, int samples, Room& room, PassCounts& counts) const;
-  void aim(std::span<const glm::ivec2> pixels, size_t samples, Room& room) const;
-  void see(std::span<const glm::ivec2> pixels, int first, int samples, Room& room, PathCounts& counts) const;
-  void add_irradiance(size_t samples, Room& room, PathCounts& counts) const;
+  void add_found(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts) const;
+  void aim(std::span<const glm::ivec2> pixels, Room& room) const;
+  void see(std::span<const glm::ivec2> pixels, Room& room, PathCounts& counts) const;
+  void add_irradiance(std::span<const glm::ivec2> pixels, Room& room, PassCounts& counts) const;
+  void place_nonfinite(std::span<const glm::ivec2> pixels, const Room& room, PassCounts& counts) const;
   size_t index(const glm::ivec2& pixel) const {
     return static_cast<size_t>(pixel.y) * static_cast<size_t>(view_.width) + static_cast<size_t>(pixel.x);
   }

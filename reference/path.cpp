@@ -21,14 +21,18 @@ namespace {
 constexpr int enough_passes = 16;
 
 // A render that is stopped keeps its finished passes, so they must not last: about 4 million samples, which take
-// seconds, but at least 16 per pixel, below which stratification has little effect, and at most 1024, which take
-// milliseconds: only between two pixels is a request to stop heard.
+// seconds, but at least 16 per pixel, below which stratification has little effect, and at most a wave of paths, which
+// takes milliseconds: only between two waves is a request to stop heard.
 constexpr size_t samples_of_long_pass = size_t{1} << 22;
-constexpr size_t fewest_at_most = 16, most_at_most = 1024;
+constexpr size_t fewest_at_most = 16, most_at_most = Wave::most_paths;
 
 // Where the number of samples is open (a noise or a time to reach) it doubles after each 16 passes from the 32nd on, up
 // to the longest pass: passes stay short against the whole, and the scatter is that of at least 48 equal ones.
 constexpr int most_doublings = 10;
+
+// Single samples are far from normally distributed, and a rule that stops where their scatter happens to be small takes
+// too small an error bar: by 14 % where roulette is at work. Means of four are near enough.
+constexpr int least_samples_before_noise = 4;
 
 /// @returns a power of two
 int most_samples_of_pass(const View& view) {
@@ -41,7 +45,8 @@ int samples_of_pass(int pass, const PathOptions& options, int most) {
     const auto equal = static_cast<unsigned>(std::max(1, options.spp / options.randomizations));
     return std::min(static_cast<int>(std::bit_floor(equal)), most);
   }
-  return std::min(1 << std::clamp(pass / enough_passes - 1, 0, most_doublings), most);
+  const int least = options.noise ? least_samples_before_noise : 1;
+  return std::min(least << std::clamp(pass / enough_passes - 1, 0, most_doublings), most);
 }
 
 void check(const PathOptions& options, const View& view) {

@@ -28,15 +28,13 @@ class TileGrid {
 
   size_t count() const { return static_cast<size_t>(columns_) * static_cast<size_t>(rows_); }
 
-  /// Calls visit(x, y) for the tile's pixels, row by row, until it returns false. @returns whether it never did
+  /// Calls visit(x, y) for the tile's pixels, row by row.
   template <class Visit>
-  bool visit_pixels(size_t tile, const Visit& visit) const {
+  void visit_pixels(size_t tile, const Visit& visit) const {
     const int left = static_cast<int>(tile % static_cast<size_t>(columns_)) * side;
     const int top = static_cast<int>(tile / static_cast<size_t>(columns_)) * side;
     for (int y = top; y < std::min(top + side, height_); ++y)
-      for (int x = left; x < std::min(left + side, width_); ++x)
-        if (!visit(x, y)) return false;
-    return true;
+      for (int x = left; x < std::min(left + side, width_); ++x) visit(x, y);
   }
 
   /// The tiles of a part, in rising order; each tile is in one part, and parts differ by one tile at most.

@@ -20,7 +20,6 @@ class Vertices {
 
   const Lanes3& positions() const { return position_; }
   const Lanes3& geometric_normals() const { return geometric_normal_; }
-  const Lanes3& normals() const { return normal_; }
   Receiver receiver(size_t i) const { return {position_[i], normal_[i]}; }
 
   /// Bsdf::value and Bsdf::pdf of a direction at each vertex.

@@ -5,11 +5,13 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <vector>
 
@@ -29,6 +31,36 @@ fs::path temporary_beside(const fs::path& file) {
 }
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+/// SHA-256 of what is added piece by piece.
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    require(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+  }
+  void add(std::span<const std::byte> content) {
+    require(EVP_DigestUpdate(context_.get(), content.data(), content.size()) == 1);
+  }
+  /// Lower-case hexadecimal; nothing may be added afterwards.
+  std::string finish() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int length = 0;
+    require(EVP_DigestFinal_ex(context_.get(), digest.data(), &length) == 1);
+    constexpr char digits[] = "0123456789abcdef";
+    std::string text;
+    for (unsigned int i = 0; i < length; ++i) {
+      text += digits[digest[i] >> 4];
+      text += digits[digest[i] & 15];
+    }
+    return text;
+  }
+
+ private:
+  static void require(bool done) {
+    if (!done) throw Error("sha256", "the cryptographic library refused");
+  }
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
 
 }  // namespace
 
@@ -116,17 +148,23 @@ std::string read_file(const fs::path& file) {
 }
 
 std::string sha256(std::span<const std::byte> content) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int length = 0;
-  if (EVP_Digest(content.data(), content.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1)
-    throw Error("sha256", "the cryptographic library refused");
-  constexpr char digits[] = "0123456789abcdef";
-  std::string text;
-  for (unsigned int i = 0; i < length; ++i) {
-    text += digits[digest[i] >> 4];
-    text += digits[digest[i] & 15];
+  Sha256 hash;
+  hash.add(content);
+  return hash.finish();
+}
+
+std::string sha256_of_file(const std::filesystem::path& file, uintmax_t size) {
+  std::ifstream stream(file, std::ios::binary);
+  Sha256 hash;
+  std::vector<std::byte> piece(size_t{1} << 20);
+  for (uintmax_t left = size; left > 0;) {
+    const std::span<std::byte> part = std::span(piece).first(std::min<uintmax_t>(left, piece.size()));
+    if (!stream.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size())))
+      throw Error(file.string(), "cannot be read: " + std::string(std::strerror(errno)));
+    hash.add(part);
+    left -= part.size();
   }
-  return text;
+  return hash.finish();
 }
 
 }  // namespace voxref

@@ -40,4 +40,7 @@ std::string read_file(const std::filesystem::path& file);
 /// Lower-case hexadecimal SHA-256 (FIPS 180-4) of `content`; of a scene, `Scene::sha256` covers all its files.
 std::string sha256(std::span<const std::byte> content);
 
+/// The same of a file's first `size` bytes, read piece by piece. @throws Error with the path when there are fewer
+std::string sha256_of_file(const std::filesystem::path& file, uintmax_t size);
+
 }  // namespace voxref

@@ -38,9 +38,10 @@ class Caster {
   /// units in the last place of the scene's largest coordinate. World units.
   float surface_offset() const;
 
-  /// A ray that leaves a surface at `point` to the side of `normal` (unit).
+  /// Where a ray that leaves a surface at `point` to the side of `normal` (unit) begins.
+  glm::vec3 beside(const glm::vec3& point, const glm::vec3& normal) const { return point + surface_offset() * normal; }
   Ray leave(const glm::vec3& point, const glm::vec3& normal, const glm::vec3& direction) const {
-    return {point + surface_offset() * normal, direction, 0.0f, std::numeric_limits<float>::infinity()};
+    return {beside(point, normal), direction, 0.0f, std::numeric_limits<float>::infinity()};
   }
   /// The open segment between two points, each of which must already stand off its surface.
   static Ray segment(const glm::vec3& from, const glm::vec3& to) { return {from, to - from, 0.0f, 1.0f}; }

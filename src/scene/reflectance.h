@@ -45,7 +45,8 @@ glm::vec3 diffuse_albedo(const Reflectance& reflectance, float n_v);
 /// f = f_single (1 + f0 (1 - E) / E) with the lobe's directional albedo E at reflectance 1. Exact for a lobe that
 /// absorbs nothing; not reciprocal, since E is that of the viewer alone. @param n_v in [0,1]
 void compensate_energy(Reflectance& reflectance, float n_v);
-/// Both together, averaged over the cosine-weighted hemisphere: what a voxel keeps, which forgets where light goes.
+/// The specular lobe's and the diffuse base's albedo together, averaged over the cosine-weighted hemisphere: what a
+/// voxel keeps, which forgets where light goes.
 glm::vec3 hemispherical_albedo(const Reflectance& reflectance);
 
 }  // namespace voxref

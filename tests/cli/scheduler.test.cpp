@@ -92,8 +92,10 @@ TEST_CASE("GNU parallel retries a part that was killed, and all join to the bits
   // A voxref whose first run is killed half-way.
   fs::create_directory(place.path("mortal"));
   voxref::write_text(place.path("mortal/voxref"), R"(#!/bin/sh
-mkdir killed 2>/dev/null && exec timeout -s KILL 1 ')" VOXREF_PROGRAM R"(' "$@"
-exec ')" VOXREF_PROGRAM R"(' "$@"
+mkdir killed 2>/dev/null || exec ')" VOXREF_PROGRAM R"(' "$@"
+timeout -s KILL 1 ')" VOXREF_PROGRAM R"(' "$@"
+echo $? >killed/status
+exit $(cat killed/status)
 )");
   fs::permissions(place.path("mortal/voxref"), fs::perms::owner_all);
   const Outcome outcome = place.shell(
@@ -102,7 +104,7 @@ exec ')" VOXREF_PROGRAM R"(' "$@"
       render + "&& voxref merge part*.exr -o whole.exr");
   INFO(outcome.out << outcome.err);
   REQUIRE(outcome.status == 0);
-  CHECK(fs::exists(place.path("killed")));
+  CHECK(place.shell("cat killed/status").out == "137\n");  // killed, and not finished before
   check_is_one_render(place, "whole.exr");
   CHECK(place.shell("ls -A *.checkpoint .[!.]*").out == "");
 }

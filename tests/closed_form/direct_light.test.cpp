@@ -1,3 +1,5 @@
+// Light that is scattered once, at every pixel: a bias of 0.001 % is found, rounding hides less, and 0.09 % where nine
+// lights are chosen among. Blind to what only more bounces show.
 #include <cmath>
 #include <numbers>
 
@@ -39,7 +41,7 @@ TEST_CASE("A point light over a plane gives I cos / d^2", "[closed_form]") {
 }
 
 TEST_CASE("Each of many point lights gives its share", "[closed_form]") {
-  // More than are looked at one by one: the choice by power.
+  // More than are looked at one by one: the light tree chooses.
   Scene scene = floor_scene();
   for (int i = 0; i < 9; ++i) {
     Light light;

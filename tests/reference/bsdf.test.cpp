@@ -1,3 +1,5 @@
+// Samples, densities and values against one another. Blind to a value that is wrong in itself, which
+// distributions.test.cpp holds against the papers' formulas.
 #include "reference/bsdf.h"
 
 #include <cmath>

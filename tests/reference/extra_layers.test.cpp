@@ -1,3 +1,5 @@
+// Layers against sums, differences and closed forms of the same renderer: light that is wrong in a layer and in the
+// whole alike is not seen here, but by the closed forms of the whole; noise hides 3 % of the furnace's bounces.
 #include "reference/extra_layers.h"
 
 #include <cmath>

@@ -41,6 +41,10 @@ struct SomeVertices {
         point.reflectance.specular_f1 = 1.0f - point.reflectance.specular_f0;
         point.reflectance.alpha = uniform(0.01f, 1.0f);
         if (i % 3 == 2) point.reflectance.diffuse = glm::vec3(0.0f);
+        if (i % 4 == 0) {  // a coated base, as glTF's dielectrics are
+          point.reflectance.layer_f0 = uniform(0.02f, 0.1f);
+          point.reflectance.layer_f1 = uniform(0.5f, 1.0f);
+        }
       }
       points.push_back(point);
       out.push_back(glm::normalize(point.shading_normal + 0.9f * direction()));

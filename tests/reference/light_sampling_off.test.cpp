@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "catch.h"
+#include "compare/statistics.h"
 #include "make_scenes/builders.h"
 #include "parallel.h"
 #include "reference/small_scenes.h"
-#include "compare/statistics.h"
 #include "scene/surface.h"
 
 namespace voxref {
@@ -123,7 +123,7 @@ TEST_CASE("With and without light sampling the mean is the same under a large la
   expect_same_mean(scene, room_view(), 3, 128, 3000, 0.009);
 }
 
-TEST_CASE("With and without light sampling the mean is the same under a hundred lamps", "[path]") {
+TEST_CASE("With and without light sampling the mean is the same under a hundred emissive triangles", "[path]") {
   // 7 x 7 lamps tilted to all sides, half of them of nine times the brightness: the choice among them must be weighed
   // right.
   Scene scene = room(lambert(glm::vec3(0.2f)), glossy(0.5f, 0.4f));

@@ -135,7 +135,7 @@ TEST_CASE("A table of few lights draws each as often as it says, and leaves a un
     constexpr double tolerance = 4.0 / steps;
     std::vector<double> share(intensities.size()), rest(intensities.size());
     for (int i = 0; i < steps; ++i) {
-      const LightChoice choice = table.choose(static_cast<float>(i) / steps);
+      const LightChoice choice = table.choose(static_cast<uint32_t>(i) << 12);
       REQUIRE(choice.index < intensities.size());
       REQUIRE(choice.probability == table.probability(choice.index));
       REQUIRE((choice.rest >= 0.0f && choice.rest < 1.0f));
@@ -152,6 +152,25 @@ TEST_CASE("A table of few lights draws each as often as it says, and leaves a un
   }
 }
 
+TEST_CASE("However faint a light of a table, it is drawn as often as it says", "[light_tree]") {
+  for (const float faint : {1e-5f, 1e-7f, 1e-9f, 1e-15f}) {
+    CAPTURE(faint);
+    for (const bool last : {false, true}) {
+      const LightTable table(last ? std::vector<float>{1.0f, faint} : std::vector<float>{faint, 1.0f});
+      // The first number that is the second light's, by halving.
+      uint64_t low = 0, high = uint64_t{1} << 32;
+      while (low + 1 < high) {
+        const uint64_t middle = (low + high) / 2;
+        (table.choose(static_cast<uint32_t>(middle)).index == 1 ? high : low) = middle;
+      }
+      const double drawn = static_cast<double>(last ? (uint64_t{1} << 32) - high : high);
+      REQUIRE(drawn >= 1.0);
+      // The largest number counts as the one before: one number more or less. And 2e-7 of rounding to float32.
+      CHECK(std::abs(table.probability(last ? 1 : 0) * 0x1p32 - drawn) <= 1.0 + 2e-7 * drawn);
+    }
+  }
+}
+
 TEST_CASE("A light tree never leaves out a light that gives something", "[light_tree]") {
   const Scene scene = glowing_splinters(300);
   const Materials materials(scene);
@@ -162,6 +181,20 @@ TEST_CASE("A light tree never leaves out a light that gives something", "[light_
     for (uint32_t triangle = 0; triangle < 300; ++triangle)
       if (irradiance_of(scene, triangle, receiver) > 0.0)
         REQUIRE(lights.emitter_pdf(receiver, triangle, random.direction(), 1.0f) > 0.0f);
+  }
+}
+
+TEST_CASE("A light tree gives a light its chance beside one that is a billion times as strong", "[light_tree]") {
+  for (const float left : {1e9f, 1e-3f}) {
+    const std::vector<LightBounds> lights = {point_bounds({-1.0f, 0.0f, 0.0f}, left),
+                                             point_bounds({1.0f, 0.0f, 0.0f}, 1e6f / left)};
+    const LightTree tree(lights);
+    const Receiver receiver{{0.0f, -1.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
+    CHECK(tree.probability(0, receiver) > 0.0f);
+    CHECK(tree.probability(1, receiver) > 0.0f);
+    const auto first = tree.choose(receiver, 0.0), last = tree.choose(receiver, 1.0 - 0x1p-32);
+    REQUIRE((first && last));
+    CHECK(first->index != last->index);
   }
 }
 

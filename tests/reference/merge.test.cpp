@@ -36,7 +36,7 @@ std::vector<NamedPart> render_parts(int count) {
   for (int index = 1; index <= count; ++index) {
     const Part part = {index, count};
     parts.push_back({std::to_string(index), path_trace(scene, caster, wide_view(), part_options(part)).image});
-    mark_part(parts.back().image, part, render_of_parts);
+    mark_part(parts.back().image, part, 20, render_of_parts);
   }
   return parts;
 }
@@ -109,6 +109,11 @@ TEST_CASE("A missing, doubled, foreign or unfinished part is refused by name", "
   for (float& samples : stopped.image.channel("samples")) samples = std::min(samples, 16.0f);
   CHECK(refusal({parts[0], stopped, parts[2]}) ==
         "stopped: part 2/3: was stopped at 16 samples of 20; path --resume finishes it");
+  // All alike, as by a time limit of the farm's.
+  std::vector<NamedPart> all = parts;
+  for (NamedPart& part : all)
+    for (float& samples : part.image.channel("samples")) samples = std::min(samples, 16.0f);
+  CHECK(refusal(all) == "1: part 1/3: was stopped at 16 samples of 20; path --resume finishes it");
 }
 
 TEST_CASE("A joined image keeps what all parts say of themselves", "[merge]") {
@@ -121,6 +126,7 @@ TEST_CASE("A joined image keeps what all parts say of themselves", "[merge]") {
   CHECK(joined.attributes.at("alike") == "same");
   CHECK(!joined.attributes.contains("host"));
   CHECK(!joined.attributes.contains("voxref:part"));
+  CHECK(!joined.attributes.contains("voxref:part_spp"));
   CHECK(refusal({{"again", joined}}).rfind("again: header: is no part", 0) == 0);
 }
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "catch.h"
+#include "compare/statistics.h"
 #include "parallel.h"
 #include "reference/small_scenes.h"
-#include "compare/statistics.h"
 
 namespace voxref {
 
@@ -132,22 +132,26 @@ TEST_CASE("A noise or a time to reach ends the render", "[path]") {
   const Caster caster(scene);
   PathOptions options;
   options.spp = 0;
-  options.noise = 0.05;
+  options.noise = 0.015;
   const PathResult quiet = path_trace(scene, caster, room_view(16), options);
   double error = 0.0, value = 0.0;
   for (size_t i = 0; i < quiet.image.pixel_count(); ++i) {
     error += quiet.image.channel("stderr.Y")[i];
     value += luminance({quiet.image.channel("R")[i], quiet.image.channel("G")[i], quiet.image.channel("B")[i]});
   }
-  CHECK(error / value <= 0.05 * (1.0 + 1e-5));  // float32 channels
-  CHECK(error / value > 0.03);                  // and it does not go on long after
+  CHECK(error / value <= 0.015 * (1.0 + 1e-5));  // float32 channels
+  CHECK(error / value > 0.009);                 // and it does not go on long after
   options.spp = 20;
   options.noise = 1e-6;
   CHECK(path_trace(scene, caster, room_view(16), options).spp == 20);
   options = {};
   options.spp = 0;
   options.seconds = 0.2;
-  CHECK(path_trace(scene, caster, room_view(16), options).seconds < 0.4);
+  const PathResult timed = path_trace(scene, caster, room_view(16), options);
+  CHECK(timed.seconds < 0.4);
+  CHECK(timed.spp > 16);  // which take 2 ms
+  options.seconds = 1e-9;
+  CHECK(path_trace(scene, caster, room_view(16), options).spp == 1);  // over before it began: a single pass
 }
 
 TEST_CASE("A single pass states its error as unknown, all of the value", "[path]") {
@@ -207,6 +211,25 @@ TEST_CASE("Contributions that are not finite are counted, placed and left out", 
   CHECK(again.nonfinite == result.nonfinite);
   CHECK(again.first_nonfinite == result.first_nonfinite);
   CHECK(render(room(), room_view(16), 4).nonfinite == 0);
+}
+
+TEST_CASE("What is not finite in the irradiance alone is counted too", "[path]") {
+  // The floor that is seen is black, and ends its paths. Were it white, they would go on to a ceiling so close to the
+  // light that its irradiance overflows.
+  Scene scene;
+  add_floor(scene, 2.0f, add_material(scene, lambert(glm::vec3(0.0f))));
+  add_quad(scene, {-2.0f, 1.0f, -2.0f}, {4.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 4.0f},
+           add_material(scene, lambert(glm::vec3(0.5f))));
+  scene.lights.push_back(point_light({0.0f, 0.99f, 0.0f}, glm::vec3(1e37f)));
+  const Caster caster(scene);
+  PathOptions options;
+  options.spp = 64;
+  const View view = view_from({0.0f, 0.5f, 0.0f}, {0.0f, 0.0f, 0.0f}, 16, 16);
+  REQUIRE(path_trace(scene, caster, view, options).nonfinite == 0);
+  options.extra.irradiance = true;
+  const PathResult result = path_trace(scene, caster, view, options);
+  CHECK(result.nonfinite > 0);
+  CHECK(result.first_nonfinite.substr(0, 7) == "pixel (");
 }
 
 TEST_CASE("A scene without triangles renders its background", "[path]") {

@@ -7,6 +7,7 @@
 
 #include "bench_mesh.h"
 #include "bench_rays.h"
+#include "bench_spread.h"
 #include "bench_stages.h"
 #include "commands.h"
 #include "inputs.h"
@@ -30,25 +31,12 @@ struct Options {
   std::string published = "../shared/gpu/cornell_64";  ///< folder of the published shaders' scene and settings
 };
 
-/// Several measurements of one thing.
-struct Spread {
-  double median = 0, least = 0, greatest = 0;
-};
-
-Spread spread(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  return {median, values.front(), values.back()};
-}
-
-nlohmann::json to_json(const Spread& s) { return {{"median", s.median}, {"min", s.least}, {"max", s.greatest}}; }
-
 struct SceneBench {
   std::string scene;
-  Spread path, bare;           ///< million rays per second
-  Spread ratio;                ///< path / bare of the same round
-  double occlusion_share = 0;  ///< of the path tracer's rays, and of the bare loop's
+  Spread path, bare;                  ///< million rays per second
+  Spread ratio;                       ///< path / bare of the same round
+  double occlusion_share = 0;         ///< of the path tracer's rays, and of the bare loop's
+  Spread path_gain, arithmetic_gain;  ///< rates of all threads / of one: path tracing, and a loop of arithmetic alone
   std::vector<StageBench> stages;
   LookupBench lookup;
 };
@@ -96,6 +84,24 @@ void bench_rays(SceneBench& bench, const Scene& scene, const Caster& caster, con
   bench.ratio = spread(ratio);
 }
 
+/// What further threads bring, beside what the machine itself has to give.
+void bench_threads(SceneBench& bench, const Scene& scene, const Caster& caster, const View& view,
+                   const Options& options, const Progress& progress) {
+  std::vector<double> path, arithmetic;
+  const auto rate = [&](int round) {
+    const PathResult result = timed_path(scene, caster, view, options.seconds, round, progress);
+    return static_cast<double>(result.rays) / result.seconds;
+  };
+  for (int round = 0; round < options.rounds; ++round) {
+    const double all_path = rate(round), all_arithmetic = arithmetic_seconds();
+    const ThreadLimit one(1);
+    path.push_back(all_path / rate(round));
+    arithmetic.push_back(arithmetic_seconds() / all_arithmetic);
+  }
+  bench.path_gain = spread(path);
+  bench.arithmetic_gain = spread(arithmetic);
+}
+
 SceneBench bench_scene(const std::string& file, const Options& options, const Settings& settings, Terminal& terminal) {
   Scene scene = load_scene({file, {}, {}}, terminal);
   ensure_light(scene);
@@ -108,6 +114,7 @@ SceneBench bench_scene(const std::string& file, const Options& options, const Se
   SceneBench bench;
   bench.scene = options.mesh ? file + " with a mesh" : file;
   bench_rays(bench, scene, caster, view, options, silent);
+  bench_threads(bench, scene, caster, view, options, silent);
   View base_test = view;  // the thesis's, table 4.3
   if (!options.view.size) base_test.width = 1280, base_test.height = 720;
   bench.stages = bench_stages(scene, caster, base_test, settings, std::min(options.rounds, 3), false, silent);
@@ -138,6 +145,9 @@ void say(Terminal& terminal, const SceneBench& bench, double bandwidth) {
   line("bare casting", bench.bare, " million rays/s");
   line("ratio", bench.ratio, "");
   terminal.say(fmt::format("  {:<28} {:>8.3f}", "occlusion rays / all rays", bench.occlusion_share));
+  const std::string threads = fmt::format("{} threads / one, ", thread_count());
+  line((threads + "paths").c_str(), bench.path_gain, "");
+  line((threads + "arithmetic").c_str(), bench.arithmetic_gain, "");
   say(terminal, bench.stages, bandwidth);
   terminal.say(fmt::format("  quadrilinear look-up {:.1f} ns, in the first cache {:.1f} ns, one thread",
                            bench.lookup.volume, bench.lookup.bare));
@@ -186,6 +196,8 @@ int run_bench(const Options& options) {
                                 {"bare_million_rays_per_second", to_json(bench.bare)},
                                 {"ratio", to_json(bench.ratio)},
                                 {"occlusion_share", bench.occlusion_share},
+                                {"path_gain_of_threads", to_json(bench.path_gain)},
+                                {"arithmetic_gain_of_threads", to_json(bench.arithmetic_gain)},
                                 {"stages", to_json(bench.stages, bandwidth)},
                                 {"lookup_nanoseconds", bench.lookup.volume},
                                 {"lookup_nanoseconds_in_cache", bench.lookup.bare}});
@@ -220,7 +232,9 @@ void add_bench(CLI::App& program, Run& run) {
       "else. Its rays are prepared beforehand by walking the scene as a path tracer does: from what the camera sees,\n"
       "in cosine-distributed directions (closest hit) from surface to surface, and from each to a light (occlusion),\n"
       "in the proportion in which the path tracer casts these two kinds. It calls Embree through the same thin class,\n"
-      "one ray at a time. A scene without light gets a sun that stands 45 degrees high, for both.\n\n"
+      "one ray at a time. A scene without light gets a sun that stands 45 degrees high, for both. What further "
+      "threads\n"
+      "bring to path tracing stands beside what they bring to a loop that uses neither memory nor Embree.\n\n"
       "The cone tracer's stages are those of the thesis's base test: 1280x720 pixels unless --size is given. Bytes "
       "are\n"
       "those that a stage takes and makes, each once; the triad is a[i] = b[i] + s c[i] over 192 MiB. Where the "

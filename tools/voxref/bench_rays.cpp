@@ -126,4 +126,20 @@ double cast_seconds(const Caster& caster, const std::vector<BareRay>& rays, uint
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+double arithmetic_seconds() {
+  constexpr size_t pieces = 256, steps = size_t{1} << 20;
+  std::atomic<uint32_t> sum = 0;  // what nobody uses the compiler would leave out
+  const auto start = std::chrono::steady_clock::now();
+  parallel_for(pieces, 1, [&](size_t piece, size_t) {
+    uint32_t x = static_cast<uint32_t>(piece) | 1u;
+    for (size_t i = 0; i < steps; ++i) {  // xorshift, Marsaglia 2003: each step waits for the one before
+      x ^= x << 13;
+      x ^= x >> 17;
+      x ^= x << 5;
+    }
+    sum += x;
+  });
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 }  // namespace voxref

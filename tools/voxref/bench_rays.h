@@ -25,4 +25,7 @@ std::vector<BareRay> walk_rays(const Scene& scene, const Caster& caster, const V
 /// Casts `count` rays, going round through `rays`, and does nothing else. @return seconds
 double cast_seconds(const Caster& caster, const std::vector<BareRay>& rays, uint64_t count);
 
+/// Computes with all threads, without touching memory. @return seconds
+double arithmetic_seconds();
+
 }  // namespace voxref

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "bench_spread.h"
 #include "bench_stages.h"
 
 namespace voxref {
 namespace {
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 /// Of the published shaders at 256 voxels and 256x256 pixels, through a software OpenGL on one core, milliseconds. Both
 /// passes of the mipmaps; the bounce without its own.
@@ -23,7 +19,7 @@ constexpr std::array<Published, 5> published = {
     {{"voxelize", 117}, {"shade", 2741}, {"mipmap", 424}, {"bounce", 9334}, {"image", 1219}}};
 
 double seconds_of(const std::vector<StageBench>& stages, const std::string& stage) {
-  return median(std::ranges::find(stages, stage, &StageBench::stage)->seconds);
+  return spread(std::ranges::find(stages, stage, &StageBench::stage)->seconds).median;
 }
 
 /// The same work as the published time's.
@@ -37,7 +33,7 @@ double same_work(const std::vector<StageBench>& stages, const std::string& stage
 
 void say(Terminal& terminal, const std::vector<StageBench>& stages, double bandwidth) {
   for (const StageBench& s : stages) {
-    const double seconds = median(s.seconds);
+    const double seconds = spread(s.seconds).median;
     terminal.say(fmt::format(
         "  {:<12} {:>9.4f} s ({:.4f} to {:.4f})  {:>9.3f} million {}/s  {:>6.2f} GB/s, {:.1f} % of the triad", s.stage,
         seconds, *std::ranges::min_element(s.seconds), *std::ranges::max_element(s.seconds), 1e-6 * s.count / seconds,
@@ -48,7 +44,7 @@ void say(Terminal& terminal, const std::vector<StageBench>& stages, double bandw
 nlohmann::json to_json(const std::vector<StageBench>& stages, double bandwidth) {
   nlohmann::json list = nlohmann::json::array();
   for (const StageBench& s : stages) {
-    const double seconds = median(s.seconds);
+    const double seconds = spread(s.seconds).median;
     list.push_back({{"stage", s.stage},
                     {"seconds", s.seconds},
                     {"unit", s.unit},

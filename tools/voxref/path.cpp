@@ -58,7 +58,7 @@ int run_path(Options& options, const CLI::App& command) {
   nlohmann::json origin = provenance(scene, view);
   add_path_provenance(origin, options.path, result.spp);
   attach(result.image, origin);
-  if (is_part) mark_part(result.image, options.path.part, render);
+  if (is_part) mark_part(result.image, options.path.part, options.path.spp, render);
   write_exr(options.output, result.image);
   if (!result.interrupted) std::filesystem::remove(options.path.checkpoint.file);
 
