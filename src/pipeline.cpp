@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "voxel/volume_writer.h"
@@ -66,6 +67,7 @@ LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, 
   result.voxels_occupied = surfaces.size();
   Shading shading = timed(seconds.shade, [&] {
     Shading lit = shade(scene, &caster, surfaces, settings.light, settings.shade, progress);
+    result.nonfinite.add(surfaces, lit.radiance);
     for (glm::vec3& radiance : lit.radiance) radiance = result.clamped_shade.store<Texel>(radiance);
     return lit;
   });
@@ -94,7 +96,11 @@ LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, 
     }
   }
   result.bytes = count_bytes(surfaces, pyramid, bounces ? 2 : 1);
-  if (settings.render.pixel.shadow == PixelShadow::visibility) result.visibility.emplace(surfaces, shading.visibility);
+  if (settings.render.pixel.shadow == PixelShadow::visibility) {
+    if constexpr (std::is_same_v<Texel, Rgba8>)  // as the volume holds it, which is of float32 otherwise
+      for (float& share : shading.visibility) share = decode_alpha(encode<Texel>(Float4{0.0f, 0.0f, 0.0f, share}));
+    result.visibility.emplace(surfaces, shading.visibility);
+  }
   surfaces = {};  // the image needs none of them
   shading = {};
   result.volume = timed(seconds.cone_trace, [&] {
@@ -107,6 +113,14 @@ LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, 
 }
 
 }  // namespace
+
+void NonfiniteVoxels::add(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance) {
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    const glm::vec3& value = radiance[i];
+    if (std::isfinite(value.r) && std::isfinite(value.g) && std::isfinite(value.b)) continue;
+    if (count++ == 0) first = surfaces.voxels[i];
+  }
+}
 
 LitVoxels light_voxels(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, const glm::vec3& background,
                        const Settings& settings, VolumeFolderWriter* folder, const Progress& progress) {
@@ -123,6 +137,7 @@ ConeTraceResult gather_image(const Scene& scene, const Caster& caster, const Vie
   result.bounces = lit.bounces;
   result.gain = lit.gain;
   result.bytes = lit.bytes;
+  result.nonfinite_voxels = lit.nonfinite;
   result.clamped_shade = lit.clamped_shade;
   result.clamped_bounce = lit.clamped_bounce;
   result.seconds = lit.seconds;

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "cone/render.h"
@@ -16,6 +17,14 @@ struct StageSeconds {
   double voxelize = 0, shade = 0, mipmap = 0, bounce = 0, cone_trace = 0, total = 0;
 };
 
+/// Voxels whose direct light came out as a NaN or an infinity, before any storage: what it stores of them is no light.
+struct NonfiniteVoxels {
+  size_t count = 0;
+  glm::ivec3 first{0};  ///< of them, by z, y, x
+
+  void add(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance);
+};
+
 struct ConeTraceResult {
   ConeImage image;
   glm::vec3 mean{0.0f};  ///< of R,G,B over the image
@@ -23,6 +32,7 @@ struct ConeTraceResult {
   size_t voxels_occupied = 0;
   int bounces = 0;
   double gain = 0.0;
+  NonfiniteVoxels nonfinite_voxels;
   Clamping clamped_shade, clamped_bounce;  ///< radiance that `storage` could not hold: direct, and after the bounces
   StageSeconds seconds;
   VolumeBytes bytes;  ///< that were allocated
@@ -36,6 +46,7 @@ struct LitVoxels {
   std::optional<LightVisibility> visibility;  ///< where pixel.shadow asks for it
   int bounces = 0;
   double gain = 0.0;
+  NonfiniteVoxels nonfinite;
   Clamping clamped_shade, clamped_bounce;  ///< as ConeTraceResult's
   StageSeconds seconds;                    ///< cone_trace: of making the volume ready for marching; total: of all of it
   VolumeBytes bytes;                       ///< as ConeTraceResult's

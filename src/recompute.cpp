@@ -35,7 +35,9 @@ bool averages_fragments(const Settings& settings) {
 VolumeDifference Work::within_envelope(const VolumeEntry& entry, const VolumeEntry& other,
                                        const fs::path& recomputed) const {
   const TexelEnvelope envelope =
-      texel_envelope(raster_envelopes(scene, from.grid(), settings.voxelize.static_wins, progress), entry.name);
+      texel_envelope(raster_envelopes(scene, with_box_center(from.grid(), scene.bounds(), settings.grid),
+                                      settings.voxelize.static_wins, progress),
+                     entry.name);
   ArrayFile a = open_volume(from.folder(), entry), b = open_volume(recomputed, other);
   return diff_volumes(entry, a, b, limits.tolerance, envelope, progress);
 }

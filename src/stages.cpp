@@ -44,7 +44,8 @@ Clamping bounce_stage(const VolumeFolder& from, const Settings& settings, const 
 void run_voxelize(const Scene& scene, const Grid& grid, const Settings& settings, const std::filesystem::path& to,
                   const Progress& progress) {
   VolumeFolderWriter writer(to, grid, settings.storage);
-  writer.write_surfaces(voxelize(scene, grid, settings.voxelize, progress));
+  const Grid boxed = with_box_center(grid, scene.bounds(), settings.grid);
+  writer.write_surfaces(voxelize(scene, boxed, settings.voxelize, progress));
   writer.finish();
 }
 

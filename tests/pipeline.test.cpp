@@ -1,5 +1,6 @@
 #include "pipeline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -111,6 +112,49 @@ TEST_CASE("Every storage makes nearly the same image, and writes and reads its o
       different += again.image.channel("R")[i] != result.image.image.channel("R")[i];
     CHECK(different == 0);
   }
+}
+
+TEST_CASE("Shadows from the visibility volume are those of the volume as it is stored", "[pipeline]") {
+  Scene scene = cornell_box(CornellLight::point);
+  scene.lights[0].intensity *= 0.1f;
+  const Caster caster(scene);
+  for (const Storage storage : {Storage::float32, Storage::float16, Storage::unorm8}) {
+    CAPTURE(storage_names[size_t(storage)]);
+    const TemporaryFolder folder;
+    Settings settings = at(32);
+    settings.storage = storage;
+    settings.shade.shadow = VoxelShadow::volume;  // which lets a share of the light through
+    settings.render.pixel.shadow = PixelShadow::visibility;
+    const Image image = cone_trace(scene, caster, view_of(scene, 16), settings, {folder.path}).image.image;
+    const VolumeFolder volumes(folder.path);
+    const SurfaceGrid surfaces = volumes.surfaces();
+    const std::vector<float> shares = volumes.visibility(surfaces);
+    CHECK(std::ranges::any_of(shares, [](float share) { return share > 0.01f && share < 0.99f; }));
+    const LightVisibility visibility(surfaces, shares);
+    const LitVolume volume = with_texel(storage, [&]<class Texel>(std::type_identity<Texel>) -> LitVolume {
+      return make_medium(volumes.pyramid<Texel>(true));
+    });
+    const ConeImage again =
+        render_cones({scene, caster, volume, scene.bounds(), {}, &visibility}, view_of(scene, 16), settings.render);
+    size_t different = 0;
+    for (const char* channel : {"R", "direct.G"})
+      for (size_t i = 0; i < image.pixel_count(); ++i)
+        different += again.image.channel(channel)[i] != image.channel(channel)[i];
+    CHECK(different == 0);
+  }
+}
+
+TEST_CASE("Voxels whose light is not finite are counted and placed, and do not bounce", "[pipeline]") {
+  Scene scene = cornell_box(CornellLight::point);
+  scene.lights[0].intensity = glm::vec3(1e37f);  // overflows within 0.17 m of the light
+  const Caster caster(scene);
+  Settings settings = at(16);
+  settings.bounce.count = 0;
+  const NonfiniteVoxels found = cone_trace(scene, caster, view_of(scene, 4), settings).nonfinite_voxels;
+  CHECK(found.count > 0);
+  CHECK(found.first.y > 8);  // close under the ceiling, where the light is
+  settings.bounce.count.reset();
+  CHECK_THROWS_AS(cone_trace(scene, caster, view_of(scene, 4), settings), Error);
 }
 
 TEST_CASE("Radiance that a storage cannot hold is clamped and counted", "[pipeline]") {

@@ -176,6 +176,9 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
     result.clamped = sums.clamped;
     ++result.bounces;
 
+    if (!std::isfinite(sums.total))
+      throw Error("bounce.count", "light is not finite after bounce " + std::to_string(result.bounces) +
+                                      "; is a light too bright or too close to a surface?");
     if (previous > 0.0) result.gain = sums.change / previous;
     if (result.gain >= 1.0 && !bounded)
       throw Error("bounce.count", "light grows from bounce to bounce (loop gain " + std::to_string(result.gain) +

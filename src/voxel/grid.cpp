@@ -60,6 +60,7 @@ Grid anchored_grid(const Bounds& box, const GridOptions& options) {
   grid.size = glm::ivec3(options.resolution);
   grid.min = box.min;
   grid.voxel = longest / float(options.resolution);
+  if (options.cubic) grid.box_center = box.center();
   require_distinct_voxels(grid, box);
   if (!options.cubic)
     for (int axis = 0; axis < 3; ++axis) grid.size[axis] = std::max(1, voxels_across(extent[axis], grid.voxel));
@@ -97,6 +98,11 @@ Grid fit_grid(const Bounds& scene_bounds, const GridOptions& options) {
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(center[axis]) + half[axis] > std::numeric_limits<float>::max())
       throw Error("grid", "the scene and its margin reach beyond what float32 can express");
+  return grid;
+}
+
+Grid with_box_center(Grid grid, const Bounds& bounds, const GridOptions& options) {
+  if (options.cubic) grid.box_center = (options.bounds ? *options.bounds : bounds).center();
   return grid;
 }
 

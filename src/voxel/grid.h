@@ -17,6 +17,9 @@ struct Grid {
   glm::ivec3 size{0};   ///< voxels per side
   glm::vec3 min{0.0f};  ///< world
   float voxel = 1.0f;   ///< side of a voxel, world units
+  /// Centre of the box that the grid covers, where that is not the grid's own: a cube begins at the box's minimum
+  /// corner, and the published views look at the box's centre. World.
+  std::optional<glm::vec3> box_center{};
 
   glm::vec3 max() const { return min + voxel * glm::vec3(size); }
   glm::vec3 center(const glm::ivec3& v) const { return min + voxel * (glm::vec3(v) + 0.5f); }
@@ -36,5 +39,8 @@ struct Grid {
 /// options.bounds take the place of `bounds`.
 /// @throws Error for a resolution out of range, or where float32 coordinates cannot tell such voxels apart
 Grid fit_grid(const Bounds& bounds, const GridOptions& options);
+
+/// A grid that was read from a file, with the box_center that fit_grid() would give it.
+Grid with_box_center(Grid grid, const Bounds& bounds, const GridOptions& options);
 
 }  // namespace voxref

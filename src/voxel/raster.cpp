@@ -46,7 +46,7 @@ int dominant_axis(const std::array<glm::vec3, 3>& positions) {
 
 RasterViews::RasterViews(const Grid& grid) : grid_(grid) {
   const float side = grid.voxel * float(grid.size.x), half = 0.5f * side;
-  const glm::vec3 center = grid.min + half;
+  const glm::vec3 center = grid.box_center.value_or(grid.min + half);
   const glm::vec3 up[3] = {{0, 1, 0}, {0, 0, -1}, {0, 1, 0}};
   const glm::mat4 projection = glm::ortho(-half, half, -half, half, 0.0f, side);
   for (int axis = 0; axis < 3; ++axis) {

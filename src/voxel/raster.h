@@ -27,6 +27,8 @@ struct RasterFragment {
 int dominant_axis(const std::array<glm::vec3, 3>& positions);
 
 /// Three orthographic views of a cubic grid, from its +x, +y and +z sides, as many pixels wide as the grid has voxels.
+/// They look at the centre of the box that the grid covers: where the box is no cube, pixels and voxels are not in
+/// line.
 class RasterViews {
  public:
   /// @param grid a cube

@@ -20,18 +20,18 @@ RasterTriangle triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3&
   return {{a, b, c}, {n, n, n}, {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)}};
 }
 
-std::vector<RasterFragment> fragments(const RasterTriangle& t) {
+std::vector<RasterFragment> fragments(const RasterTriangle& t, const Grid& in = grid) {
   std::vector<RasterFragment> result;
-  const auto dilated = DilatedTriangle::make(t, RasterViews(grid));
+  const auto dilated = DilatedTriangle::make(t, RasterViews(in));
   if (dilated)
     dilated->for_each_fragment(dilated->rows()[0], dilated->rows()[1],
                                [&](const RasterFragment& f) { result.push_back(f); });
   return result;
 }
 
-std::set<std::tuple<int, int, int>> voxels(const RasterTriangle& t) {
+std::set<std::tuple<int, int, int>> voxels(const RasterTriangle& t, const Grid& in = grid) {
   std::set<std::tuple<int, int, int>> result;
-  for (const RasterFragment& f : fragments(t)) result.insert({f.voxel.x, f.voxel.y, f.voxel.z});
+  for (const RasterFragment& f : fragments(t, in)) result.insert({f.voxel.x, f.voxel.y, f.voxel.z});
   return result;
 }
 
@@ -62,6 +62,22 @@ TEST_CASE("A face at 45 degrees to x and y, upright to z, is drawn edge-on and v
 TEST_CASE("A triangle without area vanishes", "[raster]") {
   CHECK(fragments(triangle({4, 4, 4}, {8, 8, 8}, {6, 6, 6})).empty());
   CHECK(fragments(triangle({4, 4, 4}, {4, 4, 4}, {4, 4, 4})).empty());
+}
+
+TEST_CASE("The views look at the centre of the scene's box, which is not always the cube's", "[raster]") {
+  // A sliver at z = 3.4 to 3.6, drawn along x, which half a pixel on each side makes 2.9 to 4.1. In a box of 15 voxels
+  // along z pixels are centred on 3 and 4, where it has two; in a cube on 3.5 alone.
+  const RasterTriangle sliver = triangle({8.5f, 2.0f, 3.4f}, {8.5f, 14.0f, 3.4f}, {8.5f, 8.0f, 3.6f});
+  const auto slices = [&](float depth) {
+    Bounds box;
+    box.add(glm::vec3(0.0f));
+    box.add({16.0f, 16.0f, depth});
+    std::set<int> result;
+    for (const auto& [x, y, z] : voxels(sliver, fit_grid(box, {16, true}))) result.insert(z);
+    return result;
+  };
+  CHECK(slices(16.0f) == std::set<int>{3});
+  CHECK(slices(15.0f) == std::set<int>{3, 4});
 }
 
 TEST_CASE("Along each axis a wall lands in the voxels that hold it", "[raster]") {

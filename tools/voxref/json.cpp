@@ -35,6 +35,7 @@ nlohmann::json to_json(const ConeTraceResult& result) {
           {"bounces", result.bounces},
           {"gain", result.gain},
           {"clamped_voxels", {{"shade", result.clamped_shade.voxels}, {"bounce", result.clamped_bounce.voxels}}},
+          {"nonfinite_voxels", result.nonfinite_voxels.count},
           {"nonfinite", result.image.nonfinite}};
 }
 

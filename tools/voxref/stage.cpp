@@ -63,6 +63,7 @@ void run_gather(const Input& input) {
   attach(result.image, origin);
   std::filesystem::create_directories(input.output);
   write_exr(image_file(input.options), result.image);
+  warn_nonfinite(input.terminal, result);
 }
 
 int run_stage(const Options& options) {

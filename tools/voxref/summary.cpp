@@ -32,6 +32,12 @@ void warn(Terminal& terminal, const Clamping& clamped, Storage storage, const st
       storage_names[size_t(storage)], with_texel(storage, limit), stage, clamped.voxels, clamped.brightest));
 }
 
+void warn_nonfinite(Terminal& terminal, const ConeImage& image) {
+  if (image.nonfinite > 0)
+    terminal.warn(fmt::format("voxref: warning: {} pixels are not finite, the first at {}", image.nonfinite,
+                              image.first_nonfinite));
+}
+
 void say(Terminal& terminal, const ConeTraceResult& result, Storage storage) {
   const StageSeconds& s = result.seconds;
   terminal.say(fmt::format("cone      {}x{}x{} grid, {} voxels occupied, {} bounces", result.grid.size.x,
@@ -45,9 +51,10 @@ void say(Terminal& terminal, const ConeTraceResult& result, Storage storage) {
   memory.pop_back();  // the last comma
   terminal.say(memory);
   terminal.say(fmt::format("mean      {:.6g} {:.6g} {:.6g}", result.mean.r, result.mean.g, result.mean.b));
-  if (result.image.nonfinite > 0)
-    terminal.warn(fmt::format("voxref: warning: {} pixels are not finite, the first at {}", result.image.nonfinite,
-                              result.image.first_nonfinite));
+  if (const NonfiniteVoxels& voxels = result.nonfinite_voxels; voxels.count > 0)
+    terminal.warn(fmt::format("voxref: warning: the light of {} voxels is not finite, the first is ({}, {}, {})",
+                              voxels.count, voxels.first.x, voxels.first.y, voxels.first.z));
+  warn_nonfinite(terminal, result.image);
   warn(terminal, result.clamped_shade, storage, "shading");
   warn(terminal, result.clamped_bounce, storage, "the last bounce");
 }

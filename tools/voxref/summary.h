@@ -8,6 +8,8 @@ namespace voxref {
 /// The result in a few aligned lines, on the terminal as it is configured.
 void say(Terminal& terminal, const PathResult& result);
 void say(Terminal& terminal, const ConeTraceResult& result, Storage storage);
+/// Says what is not finite, if anything.
+void warn_nonfinite(Terminal& terminal, const ConeImage& image);
 /// Says what a storage clamped, if anything. @param stage that made it
 void warn(Terminal& terminal, const Clamping& clamped, Storage storage, const std::string& stage);
 
