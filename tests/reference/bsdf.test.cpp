@@ -10,46 +10,17 @@
 #include "catch.h"
 #include "image/image.h"
 #include "reference/chi_square.h"
+#include "reference/reflectances.h"
 #include "reference/sampler.h"
 
 namespace voxref {
 
 namespace {
 
-/// A point whose normals are +z.
-SurfacePoint flat_point(const Reflectance& reflectance) {
-  SurfacePoint point;
-  point.geometric_normal = point.shading_normal = {0.0f, 0.0f, 1.0f};
-  point.reflectance = reflectance;
-  return point;
-}
-
-Reflectance metal(float alpha, float f0 = 1.0f) {
-  Reflectance reflectance;
-  reflectance.specular_f0 = glm::vec3(f0);
-  reflectance.specular_f1 = glm::vec3(1.0f - f0);
-  reflectance.alpha = alpha;
-  return reflectance;
-}
-
-/// glTF's plastic: a 4 % lobe over a white base.
-Reflectance plastic(float alpha) {
-  Reflectance reflectance = metal(alpha, 0.04f);
-  reflectance.diffuse = glm::vec3(0.9f);
-  reflectance.layer_f0 = 0.04f;
-  reflectance.layer_f1 = 0.96f;
-  return reflectance;
-}
-
 Reflectance lambertian(float albedo) {
   Reflectance reflectance;
   reflectance.diffuse = glm::vec3(albedo);
   return reflectance;
-}
-
-glm::vec3 direction(float cosine, float angle) {
-  const float sine = std::sqrt(1.0f - cosine * cosine);
-  return {sine * std::cos(angle), sine * std::sin(angle), cosine};
 }
 
 BsdfSample draw(const Bsdf& bsdf, uint32_t i) {

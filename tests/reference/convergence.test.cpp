@@ -163,9 +163,9 @@ TEST_CASE("Stopping at a noise biases neither the image nor its standard errors"
     int seeds;
     double most_square;
   };
-  // Student's distribution has a mean square of 1.15 with the 16 passes at which the rule first looks, and 1.08 with 28.
-  // Roulette's samples are far from normal, and means of four still a little: 1.24 was measured there, error bars that
-  // are 4 % too small.
+  // Student's distribution has a mean square of 1.15 with the 16 passes at which the rule first looks, and 1.08
+  // with 28. Roulette's samples are far from normal, and means of four still a little: 1.24 was measured there, error
+  // bars that are 4 % too small.
   for (const Case& known : {Case{luminaire(8), 0.0285, 512, 1.2}, Case{furnace(8), 0.04, 512, 1.3},
                             Case{luminaire(8), 0.02, 128, 1.15}, Case{furnace(8), 0.03, 128, 1.15}}) {
     PathOptions options;

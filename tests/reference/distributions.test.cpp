@@ -13,6 +13,7 @@
 #include "reference/bsdf.h"
 #include "reference/chi_square.h"
 #include "reference/light_sampling.h"
+#include "reference/reflectances.h"
 #include "reference/sampler.h"
 #include "reference/small_scenes.h"
 
@@ -32,25 +33,6 @@ size_t bin_of(double x, size_t bins) {
 }
 
 double turn_of(const glm::dvec3& v) { return std::atan2(v.y, v.x) / (2.0 * pi) + 0.5; }
-
-glm::dvec3 direction(double cosine, double angle) {
-  const double sine = std::sqrt(1.0 - cosine * cosine);
-  return {sine * std::cos(angle), sine * std::sin(angle), cosine};
-}
-
-Reflectance metal(float alpha) {
-  Reflectance reflectance;
-  reflectance.specular_f0 = glm::vec3(1.0f);
-  reflectance.alpha = alpha;
-  return reflectance;
-}
-
-SurfacePoint flat_point(const Reflectance& reflectance) {
-  SurfacePoint point;
-  point.geometric_normal = point.shading_normal = {0.0f, 0.0f, 1.0f};
-  point.reflectance = reflectance;
-  return point;
-}
 
 /// Microfacet normals by how far out in the lobe's tail they are, whatever alpha: x = 1 - cos(phi) where tan(phi) is
 /// the slope over alpha, and the turn. No tail is too narrow or too far out, and at grazing, where the visible normals'
@@ -202,14 +184,9 @@ TEST_CASE("A white lobe returns what its formula returns, and so loses what face
 }
 
 TEST_CASE("BSDFs are reciprocal for any two directions", "[distributions]") {
-  Reflectance plastic = metal(0.3f), half = metal(0.1f);
-  plastic.specular_f0 = glm::vec3(0.04f);
-  plastic.specular_f1 = glm::vec3(0.96f);
-  plastic.diffuse = {0.9f, 0.5f, 0.1f};
-  plastic.layer_f0 = 0.04f;
-  plastic.layer_f1 = 0.96f;
+  Reflectance half = metal(0.1f);
   half.diffuse = glm::vec3(0.4f);
-  for (const Reflectance& reflectance : {plastic, half, metal(1.0f)}) {
+  for (const Reflectance& reflectance : {plastic(0.3f, {0.9f, 0.5f, 0.1f}), half, metal(1.0f)}) {
     const SurfacePoint point = flat_point(reflectance);
     double worst = 0.0;
     for (uint32_t i = 0; i < 4096; ++i) {

@@ -140,7 +140,7 @@ TEST_CASE("A noise or a time to reach ends the render", "[path]") {
     value += luminance({quiet.image.channel("R")[i], quiet.image.channel("G")[i], quiet.image.channel("B")[i]});
   }
   CHECK(error / value <= 0.015 * (1.0 + 1e-5));  // float32 channels
-  CHECK(error / value > 0.009);                 // and it does not go on long after
+  CHECK(error / value > 0.009);                  // and it does not go on long after
   options.spp = 20;
   options.noise = 1e-6;
   CHECK(path_trace(scene, caster, room_view(16), options).spp == 20);

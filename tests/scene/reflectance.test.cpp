@@ -5,19 +5,14 @@
 #include <numbers>
 
 #include "catch.h"
+#include "reference/reflectances.h"
 
 using namespace voxref;
 
 namespace {
 
 constexpr double pi = std::numbers::pi;
-const glm::vec3 normal(0.0f, 0.0f, 1.0f);
-
-glm::vec3 direction(double cosine, double phi) {
-  const double sine = std::sqrt(1.0 - cosine * cosine);
-  return {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)),
-          static_cast<float>(cosine)};
-}
+const glm::vec3 normal(0.0f, 0.0f, 1.0f), base(0.5f, 0.4f, 0.9f);
 
 /// Integral of g(direction) cos over the hemisphere by the midpoint rule in (cos^2, phi): exact for constants.
 template <class F>
@@ -26,24 +21,6 @@ double integrate_cosine(F&& g, int side) {
   for (int i = 0; i < side; ++i)
     for (int j = 0; j < side; ++j) sum += g(direction(std::sqrt((i + 0.5) / side), 2.0 * pi * (j + 0.5) / side));
   return sum * pi / (double(side) * side);
-}
-
-Reflectance metal(float alpha) {
-  Reflectance r;
-  r.specular_f0 = glm::vec3(1.0f);
-  r.alpha = alpha;
-  return r;
-}
-
-Reflectance plastic(float alpha) {
-  Reflectance r;
-  r.diffuse = {0.5f, 0.4f, 0.9f};
-  r.layer_f0 = 0.04f;
-  r.layer_f1 = 0.96f;
-  r.specular_f0 = glm::vec3(0.04f);
-  r.specular_f1 = glm::vec3(0.96f);
-  r.alpha = alpha;
-  return r;
 }
 
 }  // namespace
@@ -60,7 +37,8 @@ TEST_CASE("the BSDF is reciprocal", "[reflectance]") {
   for (const float alpha : {0.01f, 0.3f, 1.0f})
     for (const double c : {0.05, 0.4, 0.99}) {
       const glm::vec3 a = direction(c, 0.3), b = direction(0.6, 2.0);
-      const glm::vec3 forward = evaluate(plastic(alpha), normal, a, b), back = evaluate(plastic(alpha), normal, b, a);
+      const glm::vec3 forward = evaluate(plastic(alpha, base), normal, a, b),
+                      back = evaluate(plastic(alpha, base), normal, b, a);
       // The half vector is summed in the other order: a few roundings, which a narrow lobe amplifies by 1/alpha.
       CHECK(forward.r == Approx(back.r).epsilon(1e-5));
     }
@@ -76,7 +54,7 @@ TEST_CASE("the GGX distribution's projected area is one", "[reflectance]") {
 TEST_CASE("directional albedos agree with brute-force integration of the BSDF", "[reflectance]") {
   for (const float alpha : {0.16f, 0.36f, 1.0f})
     for (const float n_v : {0.1f, 0.35f, 0.8f, 1.0f}) {
-      const Reflectance r = plastic(alpha);
+      const Reflectance r = plastic(alpha, base);
       const glm::vec3 view = direction(n_v, 0.0);
       const double total = integrate_cosine([&](const glm::vec3& l) { return evaluate(r, normal, view, l).g; }, 700);
       const glm::vec3 tabulated = specular_albedo(r, n_v) + diffuse_albedo(r, n_v);
@@ -91,7 +69,7 @@ TEST_CASE("directional albedos agree with brute-force integration of the BSDF", 
 TEST_CASE("no lobe returns more light than it receives, and glTF's dielectric little more in the mean",
           "[reflectance]") {
   for (const float alpha : {Reflectance::min_alpha, 0.1f, 0.5f, 1.0f}) {
-    Reflectance white = plastic(alpha);
+    Reflectance white = plastic(alpha, base);
     white.diffuse = glm::vec3(1.0f);
     for (float n_v = 0.0f; n_v <= 1.0f; n_v += 0.05f) {
       CHECK(specular_albedo(metal(alpha), n_v).r <= 1.0f);
@@ -108,7 +86,7 @@ TEST_CASE("no lobe returns more light than it receives, and glTF's dielectric li
 
 TEST_CASE("the hemispherical albedo is the cosine-weighted mean of the directional ones", "[reflectance]") {
   for (const float alpha : {0.04f, 0.5f}) {
-    const Reflectance r = plastic(alpha);
+    const Reflectance r = plastic(alpha, base);
     const double mean =
         integrate_cosine([&](const glm::vec3& v) { return specular_albedo(r, v.z).b + diffuse_albedo(r, v.z).b; },
                          300) /
