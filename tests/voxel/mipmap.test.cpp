@@ -7,42 +7,13 @@
 
 #include "catch.h"
 #include "parallel.h"
+#include "voxel/filled_volume.h"
 
 using namespace voxref;
 
 namespace {
 
-using Base = BrickVolume<glm::vec4>;
-using Fill = std::function<glm::vec4(const glm::ivec3&)>;
-
 const glm::vec4 red(1.0f, 0.0f, 0.0f, 1.0f), green(0.0f, 1.0f, 0.0f, 1.0f), clear(0.0f);
-
-template <class Visit>
-void for_each_voxel(const glm::ivec3& size, Visit&& visit) {
-  for (int z = 0; z < size.z; ++z)
-    for (int y = 0; y < size.y; ++y)
-      for (int x = 0; x < size.x; ++x) visit(glm::ivec3(x, y, z));
-}
-
-Base make_base(const glm::ivec3& size, const Fill& fill) {
-  Base base(size);
-  std::vector<glm::ivec3> bricks;
-  for_each_voxel(base.brick_grid(), [&](const glm::ivec3& b) {
-    bool used = false;
-    for_each_voxel(glm::min(size - b * Base::side, glm::ivec3(Base::side)),
-                   [&](const glm::ivec3& v) { used |= fill(b * Base::side + v) != clear; });
-    if (used) bricks.push_back(b);
-  });
-  base.allocate(bricks);
-  for_each_voxel(size, [&](const glm::ivec3& v) {
-    if (const glm::vec4 texel = fill(v); texel != clear) base(v) = texel;
-  });
-  return base;
-}
-
-Pyramid filtered(const glm::ivec3& size, const Fill& fill, MipmapFilter filter = MipmapFilter::anisotropic) {
-  return mipmap(Grid{size, glm::vec3(0.0f), 1.0f}, make_base(size, fill), {filter});
-}
 
 /// Random premultiplied texels; half of them empty.
 Fill random_texels(unsigned seed, const glm::ivec3& size) {
@@ -280,42 +251,6 @@ TEST_CASE("opacity stays in [0,1] and colour below opacity times the largest rad
             REQUIRE(std::max({face.r, face.g, face.b}) <= face.a + 1e-6f);
           }
   }
-}
-
-TEST_CASE("faces permute as the volume does under the cube's 48 symmetries, to the bit for dyadic data", "[mipmap]") {
-  const int side = 8;
-  std::mt19937 random(5);
-  // Opacities 0, 1/2, 1 and radiances 1/2, 1 need at most 24 bits after three levels.
-  std::vector<glm::vec4> texels(side * side * side);
-  for (glm::vec4& texel : texels) {
-    const float alpha = 0.5f * float(random() % 3);
-    const auto radiance = [&] { return 0.5f * float(1 + random() % 2); };
-    texel = alpha * glm::vec4(radiance(), radiance(), radiance(), 1.0f);
-  }
-  const Fill fill = [&](const glm::ivec3& v) { return texels[v.x + side * (v.y + side * v.z)]; };
-  const Pyramid original = filtered(glm::ivec3(side), fill);
-
-  std::array<int, 3> axes = {0, 1, 2};
-  do {
-    for (int flips = 0; flips < 8; ++flips) {
-      // Coordinate axes[a] of the original becomes coordinate a, mirrored where bit a is set.
-      const auto back = [&](const glm::ivec3& v, int size) {
-        glm::ivec3 result;
-        for (int a = 0; a < 3; ++a) result[axes[a]] = flips >> a & 1 ? size - 1 - v[a] : v[a];
-        return result;
-      };
-      const Pyramid moved = filtered(glm::ivec3(side), [&](const glm::ivec3& v) { return fill(back(v, side)); });
-      bool same = true;
-      for (size_t k = 0; k < original.levels.size(); ++k)
-        for_each_voxel(moved.levels[k].size(), [&](const glm::ivec3& v) {
-          const DirectionalTexel& from = original.levels[k](back(v, moved.levels[k].size().x));
-          for (int a = 0; a < 3; ++a)
-            for (int sign = 0; sign < 2; ++sign)
-              same &= moved.levels[k](v)[2 * a + sign] == from[2 * axes[a] + (sign ^ (flips >> a & 1))];
-        });
-      CHECK(same);
-    }
-  } while (std::next_permutation(axes.begin(), axes.end()));
 }
 
 TEST_CASE("odd sides lose no voxel and count none twice", "[mipmap]") {
