@@ -81,7 +81,7 @@ void Wave::pend(size_t vertex, const Ray& shadow_ray) {
 VOXREF_WIDEST void Wave::weigh_by_light(bool against_bsdf) {
   const auto weigh = [&](bool weighs) {
     const size_t count = vertices_.size();
-#pragma GCC ivdep
+    VOXREF_INDEPENDENT
     for (size_t i = 0; i < count; ++i) {
       const float weight = weighs ? power_heuristic(light_.pdf[i], pdf_[i]) / light_.pdf[i] : 1.0f;
       const glm::vec3 arriving = scattered_[i] * light_.light[i];
@@ -97,14 +97,14 @@ VOXREF_WIDEST void Wave::weigh_by_light(bool against_bsdf) {
 VOXREF_WIDEST void Wave::weigh_by_bsdf(float least_survival, float most_survival) {
   const size_t count = vertices_.size();
   const uint32_t* numbers = roulette_.x.data();
-#pragma GCC ivdep
+  VOXREF_INDEPENDENT
   for (size_t i = 0; i < count; ++i) {
     const glm::vec3 weight = weight_[i];
     const glm::vec3 throughput = throughput_[i] * weight;
     const float kept = largest(throughput) / least_throughput;
     const float survival = std::min(std::max(kept, least_survival), most_survival);
     const bool some = (weight.x != 0.0f) | (weight.y != 0.0f) | (weight.z != 0.0f);
-    goes_on_[i] = some & !(unit_float(numbers[i]) >= survival) ? 1u : 0u;
+    goes_on_[i] = (some & !(unit_float(numbers[i]) >= survival)) ? 1u : 0u;
     throughput_.set(i, throughput / survival);
   }
 }

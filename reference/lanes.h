@@ -14,6 +14,12 @@
 #else
 #define VOXREF_WIDEST
 #endif
+/// Before a loop whose turns do not depend on one another, which the compiler cannot know of arrays behind pointers.
+#if defined(__GNUC__) && !defined(__clang__)
+#define VOXREF_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define VOXREF_INDEPENDENT
+#endif
 
 namespace voxref {
 

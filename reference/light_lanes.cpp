@@ -12,7 +12,7 @@ namespace {
 /// A single point or spot light.
 VOXREF_WIDEST void illuminate_all(const Light& light, size_t count, const Lanes3& positions, LightLanes& found) {
   const auto illuminate = [&](bool spot) {
-#pragma GCC ivdep
+    VOXREF_INDEPENDENT
     for (size_t i = 0; i < count; ++i) {
       const Illumination here = illuminate_near(light, spot, positions[i]);
       found.to_light.set(i, here.to_light);
@@ -45,7 +45,7 @@ VOXREF_WIDEST void LightSampler::sample_few_emitters(const Vertices& vertices, c
   const size_t count = vertices.size();
   const auto sample_one = [&](uint32_t index, bool first) {
     const Emitter emitter = emitters_[index];
-#pragma GCC ivdep
+    VOXREF_INDEPENDENT
     for (size_t i = 0; i < count; ++i) {
       const LightChoice choice = table.choose(x[i]);
       const glm::vec2 uv = uniform_triangle({choice.rest, unit_float(y[i])});

@@ -98,6 +98,7 @@ void LightSampler::add_emitters() {
   if (emitters_.empty()) return;
   if (few_emitters()) {
     std::vector<float> intensities;
+    intensities.reserve(bounds.size());
     for (const LightBounds& emitter : bounds) intensities.push_back(emitter.intensity);
     emitter_table_ = LightTable(intensities);
   } else {

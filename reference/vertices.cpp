@@ -34,7 +34,7 @@ inline Bsdf Vertices::bsdf(size_t i, bool lambertian) const {
 
 VOXREF_WIDEST void Vertices::evaluate(const Lanes3& in, Lanes3& value, Lanes<float>& pdf) const {
   const auto evaluate_all = [&](bool lambertian) __attribute__((always_inline)) {
-#pragma GCC ivdep
+    VOXREF_INDEPENDENT
     for (size_t i = 0; i < size_; ++i) {
       const Bsdf here = bsdf(i, lambertian);
       value.set(i, here.value(in[i]));
@@ -47,7 +47,7 @@ VOXREF_WIDEST void Vertices::evaluate(const Lanes3& in, Lanes3& value, Lanes<flo
 VOXREF_WIDEST void Vertices::sample(const uint32_t* choice, const uint32_t* x, const uint32_t* y, Lanes3& in,
                                     Lanes3& weight, Lanes<float>& pdf) const {
   const auto sample_all = [&](bool lambertian) __attribute__((always_inline)) {
-#pragma GCC ivdep
+    VOXREF_INDEPENDENT
     for (size_t i = 0; i < size_; ++i) {
       const BsdfSample sample = bsdf(i, lambertian).sample(unit_float(choice[i]), {unit_float(x[i]), unit_float(y[i])});
       in.set(i, sample.in);

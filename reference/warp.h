@@ -33,7 +33,8 @@ struct Frame {
 /// quarter turn, at most pi / 4: the first terms left out are 2.5e-8 and 1.8e-9. No call, and
 /// the same bits whatever the C library.
 inline glm::vec2 cos_sin_of_turns(float turns) {
-  const int quarter = static_cast<int>(4.0f * turns + 0.5f);
+  // A conversion rounds down what is above 0, in one instruction.
+  const int quarter = static_cast<int>(4.0f * turns + 0.5f);  // NOLINT(bugprone-incorrect-roundings)
   const float x = 2.0f * std::numbers::pi_v<float> * (turns - 0.25f * static_cast<float>(quarter));
   const float x2 = x * x;
   const float c = 1.0f + x2 * (-1.0f / 2 + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
