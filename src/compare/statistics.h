@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <vector>
 
 // What a comparison of random estimates needs to say: how sure a verdict is, and how small a bias it would have caught.
 namespace voxref {
@@ -48,6 +49,26 @@ inline double student_quantile(double tail, double freedom) {
   return high;
 }
 
+/// NaN of no values.
+inline double mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Several measurements of one thing.
+struct Spread {
+  double median = 0.0, least = 0.0, greatest = 0.0;
+};
+
+/// Of at least one value.
+inline Spread spread(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t middle = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return {median, values.front(), values.back()};
+}
+
 /// A mean and its standard error; freedom: degrees with which the error is itself known, infinite where it is exact.
 struct Estimate {
   double mean = 0.0, error = 0.0;
@@ -57,10 +78,10 @@ struct Estimate {
 /// Of values that are independent of each other, at least two.
 inline Estimate estimate(std::span<const double> values) {
   const auto count = static_cast<double>(values.size());
-  double mean = 0.0, scatter = 0.0;
-  for (const double value : values) mean += value / count;
-  for (const double value : values) scatter += (value - mean) * (value - mean);
-  return {mean, std::sqrt(scatter / (count * (count - 1.0))), count - 1.0};
+  const double middle = mean(values);
+  double scatter = 0.0;
+  for (const double value : values) scatter += (value - middle) * (value - middle);
+  return {middle, std::sqrt(scatter / (count * (count - 1.0))), count - 1.0};
 }
 
 /// Welch's test of two means with errors of their own (Welch 1947); freedom after Satterthwaite 1946.

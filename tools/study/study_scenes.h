@@ -10,6 +10,19 @@ StudyScene cornell_point_scene();
 StudyScene light_box_scene();
 StudyScene plane_test_scene();
 
+/// Where one stands in a public scene, whose file has neither camera nor light, metres, and what lights it: a lamp
+/// between camera and target, bright enough for an irradiance of about 1 W/m^2 half-way across, or a sun through the
+/// openings.
+struct Standpoint {
+  const char* name;
+  glm::vec3 eye, target, lamp;
+  float intensity;  ///< W/sr
+};
+/// @throws Error naming a scene that has none
+const Standpoint& standpoint(const std::string& name);
+/// @param irradiance of a facing surface, W/m^2
+Light study_sun(float irradiance);
+
 /// One of the larger public scenes, with a camera inside and one point light, or a sun: sponza, sibenik, conference.
 /// @param assets the folder that holds `assets/` @returns none where the file is absent
 std::optional<StudyScene> public_scene(const std::string& name, const std::filesystem::path& assets, bool sun);

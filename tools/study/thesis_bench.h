@@ -1,28 +1,25 @@
 #pragma once
-#include <chrono>
+#include <cstdint>
 #include <vector>
 
 #include "pipeline.h"
 #include "study/study.h"
+#include "study/thesis_shape.h"
 
 namespace voxref {
 
 struct ThesisSizes {
   std::vector<int> resolutions;
-  int base = 256;                                ///< voxels; rows are set over those of this resolution
-  int width_720 = 1280, width_1080 = 1920;       ///< pixels, in place of the published screens
-  int quality_width = 1920, quality_base = 512;  ///< of the base pictures: pixels, voxels
+  int base = 256;                               ///< voxels; rows are set over those of this resolution
+  int width_720 = 640, width_1080 = 960;        ///< pixels, in place of 1280 and 1920: as many times more pixels
+  int quality_width = 480, quality_base = 512;  ///< of the base pictures, 1920 and 512 there: pixels, voxels
+  int spp = 128;                                ///< of path-traced references
 };
-
-template <class Work>
-double seconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The base test's settings (thesis 4.3): no traced shadows, one bounce.
 Settings thesis_settings(int resolution);
+/// The shadow tests' (4.7, 4.8): the same without bounce; the voxels' and the pixels' shadows are to be chosen.
+Settings thesis_shadow_settings(int resolution);
 
 /// One scene voxelized: the stages that follow share it.
 class PreparedScene {
@@ -32,11 +29,9 @@ class PreparedScene {
 
   LitVoxels lit(const Settings& settings) const;
   Image image(const Settings& settings, const LitVoxels& volume, int width) const;
-  /// Seconds of the image's pixels: less what an image of two pixels takes, which is that of the G-buffer's own
-  /// acceleration structure (a GPU rasterizes).
-  double image_seconds(const Settings& settings, const LitVoxels& volume, int width) const;
-
-  double fixed = 0, dynamic = 0;  ///< seconds of both voxelizations
+  /// Seconds of an image's pixels: less what an image two pixels wide takes, which is the G-buffer's own acceleration
+  /// structure (a GPU rasterizes).
+  Timing image_timing(const Settings& settings, const LitVoxels& volume, int width) const;
 
  private:
   const StudyScene& scene_;
@@ -45,9 +40,17 @@ class PreparedScene {
   const Progress& progress_;
 };
 
-// Sections of `study thesis`; times are in thesis.cpp.
-Section thesis_quality(const std::vector<StudyScene>& scenes, const ThesisSizes& sizes, const Progress& progress);
-Section thesis_emission(const ThesisSizes& sizes, const Progress& progress);
-Section thesis_memory_use(const std::vector<StudyScene>& scenes, const ThesisSizes& sizes, const Progress& progress);
+/// The columns of tables 4.3 and 4.4.
+struct StageTimings {
+  Timing fixed;
+  Timing clear;  ///< taking the static voxels over, without what was dynamic
+  Timing dynamic, shade, mipmap, bounce, bounce_mipmap, cones;
+  Timing total;  ///< of all but the static voxels
+  size_t bytes = 0;
+};
+StageTimings measure_stages(const StudyScene& scene, int resolution, int width, const Progress& progress);
+
+/// What a scene's volumes take with the base test's settings, bytes.
+size_t volume_memory(const StudyScene& scene, int resolution, const Progress& progress);
 
 }  // namespace voxref

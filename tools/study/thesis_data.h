@@ -7,37 +7,39 @@ namespace voxref {
 
 // What Villegas 2016 measured, on an AMD R9 380; milliseconds unless said. What carries over are ratios between rows.
 
-/// Tables 4.3 and 4.4; NaN: a misprint (in the rows of 128 voxels the totals repeat another column).
+inline constexpr double misprint = std::numeric_limits<double>::quiet_NaN();
+
+/// Tables 4.3 and 4.4. In the rows of 128 voxels the totals repeat another column, and a time of the cones does.
 struct ThesisStages {
   std::string_view scene;
   int voxels;
-  double fixed, dynamic, shade, mipmap, bounce, bounce_mipmap, cones;
+  double fixed, clear, dynamic, shade, mipmap, bounce, bounce_mipmap, cones, total;
 };
 inline constexpr std::array thesis_stages = {
-    ThesisStages{"sibenik", 64, 3.00, 9.17, 0.04, 0.11, 0.12, 0.10, 5.17},
-    ThesisStages{"cornell_box", 64, 0.07, 2.13, 0.06, 0.11, 0.29, 0.11, 4.79},
-    ThesisStages{"conference", 64, 39.68, 5.98, 0.03, 0.11, 0.10, 0.11, 5.38},
-    ThesisStages{"sponza", 64, 22.87, 13.93, 0.05, 0.17, 0.13, 0.17, 5.49},
-    ThesisStages{"sibenik", 128, 2.17, 3.93, 0.17, 0.26, 0.62, 0.26, std::numeric_limits<double>::quiet_NaN()},
-    ThesisStages{"cornell_box", 128, 0.16, 1.38, 0.28, 0.26, 1.62, 0.26, 5.75},
-    ThesisStages{"conference", 128, 39.19, 2.47, 0.15, 0.26, 0.54, 0.26, 6.42},
-    ThesisStages{"sponza", 128, 15.15, 4.00, 0.20, 0.26, 0.82, 0.26, 5.47},
-    ThesisStages{"sibenik", 256, 1.80, 2.11, 0.95, 1.39, 3.88, 1.38, 7.31},
-    ThesisStages{"cornell_box", 256, 0.51, 1.30, 1.33, 1.38, 8.41, 1.37, 7.23},
-    ThesisStages{"conference", 256, 46.04, 1.52, 0.86, 1.38, 3.23, 1.37, 7.50},
-    ThesisStages{"sponza", 256, 11.29, 2.03, 1.13, 1.37, 5.44, 1.38, 7.01},
-    ThesisStages{"sibenik", 512, 2.36, 1.35, 6.06, 10.92, 23.23, 10.91, 8.57},
-    ThesisStages{"cornell_box", 512, 6.18, 1.80, 7.54, 10.70, 41.14, 10.87, 7.87},
-    ThesisStages{"conference", 512, 47.44, 1.28, 5.63, 11.57, 18.70, 11.35, 8.56},
-    ThesisStages{"sponza", 512, 9.05, 1.39, 6.87, 11.16, 28.09, 10.79, 7.64},
+    ThesisStages{"sibenik", 64, 3.00, 0.01, 9.17, 0.04, 0.11, 0.12, 0.10, 5.17, 14.74},
+    ThesisStages{"cornell_box", 64, 0.07, 0.02, 2.13, 0.06, 0.11, 0.29, 0.11, 4.79, 7.51},
+    ThesisStages{"conference", 64, 39.68, 0.01, 5.98, 0.03, 0.11, 0.10, 0.11, 5.38, 11.72},
+    ThesisStages{"sponza", 64, 22.87, 0.01, 13.93, 0.05, 0.17, 0.13, 0.17, 5.49, 19.97},
+    ThesisStages{"sibenik", 128, 2.17, 0.08, 3.93, 0.17, 0.26, 0.62, 0.26, misprint, misprint},
+    ThesisStages{"cornell_box", 128, 0.16, 0.10, 1.38, 0.28, 0.26, 1.62, 0.26, 5.75, misprint},
+    ThesisStages{"conference", 128, 39.19, 0.07, 2.47, 0.15, 0.26, 0.54, 0.26, 6.42, misprint},
+    ThesisStages{"sponza", 128, 15.15, 0.08, 4.00, 0.20, 0.26, 0.82, 0.26, 5.47, misprint},
+    ThesisStages{"sibenik", 256, 1.80, 0.58, 2.11, 0.95, 1.39, 3.88, 1.38, 7.31, 17.60},
+    ThesisStages{"cornell_box", 256, 0.51, 0.78, 1.30, 1.33, 1.38, 8.41, 1.37, 7.23, 21.81},
+    ThesisStages{"conference", 256, 46.04, 0.56, 1.52, 0.86, 1.38, 3.23, 1.37, 7.50, 16.42},
+    ThesisStages{"sponza", 256, 11.29, 0.60, 2.03, 1.13, 1.37, 5.44, 1.38, 7.01, 18.97},
+    ThesisStages{"sibenik", 512, 2.36, 4.51, 1.35, 6.06, 10.92, 23.23, 10.91, 8.57, 65.55},
+    ThesisStages{"cornell_box", 512, 6.18, 6.08, 1.80, 7.54, 10.70, 41.14, 10.87, 7.87, 86.00},
+    ThesisStages{"conference", 512, 47.44, 4.46, 1.28, 5.63, 11.57, 18.70, 11.35, 8.56, 61.56},
+    ThesisStages{"sponza", 512, 9.05, 4.55, 1.39, 6.87, 11.16, 28.09, 10.79, 7.64, 70.49},
 };
 
 /// Cone tracing by screen size and step (tables 4.5, 4.6: 256 voxels), shadows (4.7, 4.8).
 struct ThesisCones {
   std::string_view scene;
-  double at_1080, at_720;                      ///< step 0.5
-  double step_10, step_25, step_50, step_250;  ///< 0.1, 0.25, 0.5, 2.5 at 1280x720
-  double shade, shade_shadows;                 ///< voxels' shading without and with shadows through the volume
+  double at_1080, at_720;                             ///< step 0.5
+  double step_0_10, step_0_25, step_0_50, step_2_50;  ///< by the step, at 1280x720
+  double shade, shade_shadows;                        ///< voxels' shading without and with shadows through the volume
   double cones, visibility_volume, shadow_cones;
 };
 inline constexpr std::array thesis_cones = {

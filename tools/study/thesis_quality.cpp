@@ -1,23 +1,22 @@
-// The thesis's pictures as numbers, and its table of memory.
+// Figures 4.12 to 4.30: how different pictures look from a base picture.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <utility>
 
 #include "compare/flip.h"
-#include "reference/path.h"
-#include "study/deviation.h"
-#include "study/study_scenes.h"
-#include "study/thesis_bench.h"
-#include "study/thesis_data.h"
+#include "image/image_file.h"
+#include "study/curves.h"
 #include "study/thesis_scenes.h"
+#include "study/thesis_sections.h"
 
 namespace voxref {
 
 namespace {
 
 /// As the thesis shows its pictures: x / (1 + x).
-std::vector<glm::vec3> picture(const Image& image) {
+std::vector<glm::vec3> tone_mapped(const Image& image) {
   const auto planes = image.layer("");
   std::vector<glm::vec3> pixels(image.pixel_count());
   for (size_t i = 0; i < pixels.size(); ++i) {
@@ -27,129 +26,172 @@ std::vector<glm::vec3> picture(const Image& image) {
   return pixels;
 }
 
-/// Mean difference that is seen between two pictures, in [0,1].
-double perceived(const Image& base, const Image& other) {
-  const std::vector<float> map = flip_map(base.width(), base.height(), picture(base), picture(other));
-  double sum = 0.0;
-  for (const float value : map) sum += double(value);
-  return sum / double(map.size());
+/// What specular cones bring, alone.
+Image specular_alone(Image image) {
+  const auto specular = std::as_const(image).layer("specular");
+  const auto all = image.layer("");
+  for (size_t c = 0; c < 3; ++c) std::copy(specular[c].begin(), specular[c].end(), all[c].begin());
+  return image;
+}
+
+Image as_image(const std::vector<glm::vec3>& pixels, int width, int height) {
+  Image image(width, height);
+  image.add_layer("");
+  const auto planes = image.layer("");
+  for (size_t i = 0; i < pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) planes[size_t(c)][i] = pixels[i][c];
+  return image;
+}
+
+/// What is seen of the difference between two pictures.
+struct Perceived {
+  double yee;   ///< share of the pixels that can be told apart
+  double flip;  ///< mean, in [0,1]
+};
+
+Perceived perceived(const Image& base, const Image& other) {
+  const std::vector<glm::vec3> a = tone_mapped(base), b = tone_mapped(other);
+  const int width = base.width(), height = base.height();
+  const std::vector<float> map = flip_map(width, height, a, b);
+  const std::vector<double> values(map.begin(), map.end());
+  constexpr float as_they_are = 0.0f;
+  const uint64_t seen = yee_difference(as_image(a, width, height), as_image(b, width, height), as_they_are);
+  return {double(seen) / double(map.size()), mean(values)};
+}
+
+/// Rows of one scene, and the same as series of both charts.
+class Changes {
+ public:
+  Changes(Table& table, Chart& yee, Chart& flip, const std::string& scene, const Image& base)
+      : table_(table), yee_(yee), flip_(flip), base_(base) {
+    for (Chart* chart : {&yee_, &flip_}) chart->series.push_back({scene, ChartStyle::points, {}});
+  }
+  Perceived add(const std::string& change, const Image& image) {
+    const Perceived seen = perceived(base_, image);
+    const std::string& scene = yee_.series.back().title;
+    table_.add({scene, change, seen.yee, seen.flip});
+    const auto known = std::find(yee_.x.categories.begin(), yee_.x.categories.end(), change);
+    const auto place = static_cast<double>(known - yee_.x.categories.begin());
+    if (known == yee_.x.categories.end())
+      for (Chart* chart : {&yee_, &flip_}) chart->x.categories.push_back(change);
+    yee_.series.back().points.push_back(chart_point(place, seen.yee));
+    flip_.series.back().points.push_back(chart_point(place, seen.flip));
+    return seen;
+  }
+
+ private:
+  Table& table_;
+  Chart &yee_, &flip_;
+  const Image& base_;
+};
+
+Table perceived_table(const std::string& name, const std::string& caption) {
+  return {name, caption, {{"scene", ""}, {"change", ""}, {"yee", "share of pixels"}, {"flip", "mean"}}, {}};
+}
+
+std::pair<Chart, Chart> perceived_charts(const std::string& name, const std::string& title) {
+  const Axis changes{"", false, {}, {}, {}};
+  return {Chart{name + "_yee", title + " (Yee)", changes, {"share of pixels that differ", false, 0.0, {}, {}}, {}},
+          Chart{name + "_flip", title + " (FLIP)", changes, {"mean FLIP", false, 0.0, {}, {}}, {}}};
+}
+
+const char* const metrics =
+    "Pictures mapped by x / (1 + x) as the thesis shows them; its metric, Yee's (here the version of 2004 that "
+    "OpenImageIO has, as the share of pixels that an observer could tell apart), and FLIP (Andersson et al. 2020). It "
+    "publishes pictures, without numbers.\n\n";
+
+/// What the thesis finds, held against each scene's rows.
+struct Findings {
+  std::vector<bool> coarser_yee, coarser_flip, longest;
+};
+
+void add_scene(const StudyScene& scene, const ThesisSizes& sizes, const Progress& progress, Table& table, Chart& yee,
+               Chart& flip, Findings& findings) {
+  const Settings base = thesis_shadow_settings(sizes.quality_base);
+  const PreparedScene prepared(scene, base, progress);
+  const LitVoxels lit = prepared.lit(base);
+  const Image picture = prepared.image(base, lit, sizes.quality_width);
+  Changes changes(table, yee, flip, scene.name, picture);
+  Settings bounced = base;
+  bounced.bounce.count = 1;
+  changes.add("bounce", prepared.image(bounced, prepared.lit(bounced), sizes.quality_width));
+  std::vector<Perceived> coarser, stepped;
+  for (const int divisor : {2, 4, 8}) {
+    progress.check();
+    const Settings coarse = thesis_shadow_settings(sizes.quality_base / divisor);
+    const PreparedScene smaller(scene, coarse, progress);
+    coarser.push_back(changes.add(fmt::format("{} voxels", coarse.grid.resolution),
+                                  smaller.image(coarse, smaller.lit(coarse), sizes.quality_width)));
+  }
+  for (const float step : {1.0f, 2.5f}) {
+    Settings longer = base;
+    longer.render.cone.step = step;
+    stepped.push_back(changes.add(fmt::format("step {:g}", step), prepared.image(longer, lit, sizes.quality_width)));
+  }
+  findings.coarser_yee.push_back(coarser[0].yee <= coarser[1].yee && coarser[1].yee <= coarser[2].yee);
+  findings.coarser_flip.push_back(coarser[0].flip < coarser[1].flip && coarser[1].flip < coarser[2].flip);
+  findings.longest.push_back(stepped[0].flip < stepped[1].flip);
 }
 
 }  // namespace
 
-/// Figures 4.12 to 4.30.
-Section thesis_quality(const std::vector<StudyScene>& scenes, const ThesisSizes& sizes, const Progress& progress) {
-  return timed_section("Figures 4.12 to 4.30: perceived difference from the base picture", [&](Section& section) {
-    Table table{"thesis_quality",
-                fmt::format("Mean FLIP against {} voxels, step 0.5, no bounce at the voxels", sizes.quality_base),
-                {{"scene", ""}, {"change", ""}, {"flip", ""}},
-                {}};
-    Chart chart{"thesis_quality",
-                "Perceived difference from the base picture",
-                {"", false, {}, {}, {}},
-                {"mean FLIP", false, 0.0, {}, {}},
-                {}};
-    for (const StudyScene& scene : scenes) {
-      Series series{scene.name, ChartStyle::points, {}};
-      Settings base = thesis_settings(sizes.quality_base);
-      base.bounce.count = 0;
-      const PreparedScene prepared(scene, base, progress);
-      const LitVoxels lit = prepared.lit(base);
-      const Image picture_base = prepared.image(base, lit, sizes.quality_width);
-      const auto add = [&](const std::string& change, const Image& image) {
-        const double flip = perceived(picture_base, image);
-        table.add({scene.name, change, flip});
-        if (std::find(chart.x.categories.begin(), chart.x.categories.end(), change) == chart.x.categories.end())
-          chart.x.categories.push_back(change);
-        series.points.push_back({double(series.points.size()), flip, 0.0, "", 0.0});
-      };
-      Settings bounced = base;
-      bounced.bounce.count = 1;
-      add("bounce", prepared.image(bounced, prepared.lit(bounced), sizes.quality_width));
-      for (const int divisor : {2, 4, 8}) {
-        Settings coarse = base;
-        coarse.grid.resolution = sizes.quality_base / divisor;
-        const PreparedScene smaller(scene, coarse, progress);
-        add(fmt::format("{} voxels", coarse.grid.resolution),
-            smaller.image(coarse, smaller.lit(coarse), sizes.quality_width));
-      }
-      for (const float step : {0.1f, 1.0f, 2.5f}) {
-        progress.check();
-        Settings stepped = base;
-        stepped.render.cone.step = step;
-        const Image image = prepared.image(stepped, lit, sizes.quality_width);
-        add(fmt::format("step {:g}", step), image);
-      }
-      chart.series.push_back(std::move(series));
-    }
-    section.text =
-        "The thesis measures with Yee's metric of 2001 and shows pictures; here it is FLIP (Andersson et al. 2020), of "
-        "pictures mapped by x / (1 + x). Its findings: the difference grows as the resolution falls, and steps above 1 "
-        "skip "
-        "voxels.";
-    section.tables.push_back(std::move(table));
-    section.charts.push_back(std::move(chart));
-  });
+Section thesis_quality(const std::vector<StudyScene>& lamps, const ThesisSizes& sizes, const Progress& progress) {
+  return timed_section(
+      "Figures 4.12 to 4.27: difference from the base picture, by bounce, resolution and step", [&](Section& section) {
+        Table table =
+            perceived_table("thesis_quality", fmt::format("What is seen of the difference from {} voxels, step 0.5, "
+                                                          "no bounce at the voxels; {} pixels wide",
+                                                          sizes.quality_base, sizes.quality_width));
+        auto [yee, flip] = perceived_charts("thesis_quality", "Perceived difference from the base picture");
+        Findings findings;
+        for (const StudyScene& scene : lamps) add_scene(scene, sizes, progress, table, yee, flip, findings);
+        section.text = metrics +
+                       finding("The difference grows as the resolution falls (Yee)", findings.coarser_yee, "scenes") +
+                       " " + finding("The same by FLIP", findings.coarser_flip, "scenes") + " " +
+                       finding("A step of 2.5, which skips voxels, differs more than a step of 1 (FLIP)",
+                               findings.longest, "scenes");
+        section.tables.push_back(std::move(table));
+        section.charts = {std::move(yee), std::move(flip)};
+      });
 }
 
-/// Figure 4.33, in physical units so that the path tracer can judge.
-Section thesis_emission(const ThesisSizes& sizes, const Progress& progress) {
-  return timed_section("Figure 4.33: a glowing teapot and no lamp", [&](Section& section) {
-    Table table{"thesis_emission",
-                "What a glowing teapot brings to its neighbours, against the path tracer",
-                {{"voxels", ""}, {"mean_ratio", ""}, {"rel_error", ""}, {"rel_error_stderr", ""}},
-                {}};
-    const StudyScene scene = glowing_teapot();
-    const Caster caster(scene.scene);
-    const View view = sized(scene.view, sizes.quality_width / 2);
-    PathOptions path;
-    path.spp = 128;
-    const Measured truth = measured_path(path_trace(scene.scene, caster, view, path, progress).image, false);
-    for (const int resolution : sizes.resolutions) {
-      Settings settings;
-      settings.grid.resolution = resolution;
-      const Image cone = cone_trace(scene.scene, caster, view, settings, {}, progress).image.image;
-      const Deviation d = deviation(measured_cone(cone, false), truth);
-      table.add({double(resolution), d.bias + 1.0, d.rel_error, d.rel_error_error});
-    }
-    section.text = "Emission is gathered like any other light of the voxels (radiometric profile).";
-    section.tables.push_back(std::move(table));
-  });
-}
-
-/// Table 4.9, from the volumes of `scenes` at all resolutions.
-Section thesis_memory_use(const std::vector<StudyScene>& scenes, const ThesisSizes& sizes, const Progress& progress) {
-  return timed_section("Table 4.9: memory", [&](Section& section) {
-    Table table{"thesis_memory",
-                "Megabytes of all volumes: ours are sparse, the published ones dense",
-                {{"scene", ""}, {"voxels", ""}, {"memory", "MB"}, {"memory_published", "MB"}},
-                {}};
-    Chart chart{"thesis_memory",
-                "Memory of the volumes",
-                {"voxels along the longest side", true, {}, {}, {}},
-                {"memory / MB", true, {}, {}, {}},
-                {}};
-    for (const StudyScene& scene : scenes) {
-      Series series{scene.name, ChartStyle::line_points, {}};
-      for (const int resolution : sizes.resolutions) {
-        Settings settings = thesis_settings(resolution);
-        settings.bounce.count = 0;
-        const PreparedScene prepared(scene, settings, progress);
-        const double megabytes = 1e-6 * double(prepared.lit(settings).bytes.at("total"));
-        const auto p = std::find_if(thesis_memory.begin(), thesis_memory.end(),
-                                    [&](const ThesisMemory& row) { return row.voxels == resolution; });
-        table.add({scene.name, double(resolution), megabytes, p == thesis_memory.end() ? Cell() : Cell(p->megabytes)});
-        series.points.push_back({double(resolution), megabytes, 0.0, "", 0.0});
+Section thesis_specular(const ThesisSizes& sizes, const Progress& progress) {
+  return timed_section("Figures 4.28 to 4.30: specular reflections by step", [&](Section& section) {
+    Table table =
+        perceived_table("thesis_specular", fmt::format("What is seen of the difference from step 0.1, {} voxels, "
+                                                       "{} pixels wide",
+                                                       sizes.base, sizes.quality_width));
+    auto [yee, flip] = perceived_charts("thesis_specular", "Specular ball: perceived difference from step 0.1");
+    std::vector<bool> grows;
+    std::vector<double> at_longest;
+    for (const float degrees : {9.0f, 27.0f, 45.0f}) {
+      progress.check();
+      StudyScene ball = specular_ball(degrees);
+      ball.name = fmt::format("ball, {:g} degrees", degrees);
+      Settings settings = thesis_settings(sizes.base);
+      const PreparedScene prepared(ball, settings, progress);
+      const LitVoxels lit = prepared.lit(settings);
+      settings.render.cone.step = 0.1f;
+      const auto picture = [&] { return specular_alone(prepared.image(settings, lit, sizes.quality_width)); };
+      const Image base = picture();
+      Changes changes(table, yee, flip, ball.name, base);
+      double before = 0.0;
+      for (const float step : {0.25f, 0.5f, 1.0f, 2.5f}) {
+        settings.render.cone.step = step;
+        const double seen = changes.add(fmt::format("step {:g}", step), picture()).flip;
+        grows.push_back(seen > before);
+        before = seen;
       }
-      chart.series.push_back(std::move(series));
+      at_longest.push_back(before);
     }
-    Series published{"published, any scene", ChartStyle::dashes, {}};
-    for (const ThesisMemory& row : thesis_memory)
-      if (row.voxels <= sizes.resolutions.back())
-        published.points.push_back({double(row.voxels), row.megabytes, 0.0, "", 0.0});
-    chart.series.push_back(std::move(published));
+    section.text = std::string(
+                       "Balls whose specular cones are as wide as those of Bunny, Dragon and Buddha there; their "
+                       "specular light alone. ") +
+                   metrics + finding("Longer steps differ more (FLIP)", grows, "steps of the three balls") + " " +
+                   finding("Thin reflections break up more: 9 degrees differs more than 45 at step 2.5 (FLIP)",
+                           {at_longest.front() > at_longest.back()}, "comparisons");
     section.tables.push_back(std::move(table));
-    section.charts.push_back(std::move(chart));
+    section.charts = {std::move(yee), std::move(flip)};
   });
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "make_scenes/assemble.h"
 #include "make_scenes/builders.h"
@@ -35,8 +36,9 @@ Mesh stood(Mesh mesh, float height, const glm::vec3& foot) {
   return moved(scaled(moved(std::move(mesh), -own_foot), factor), foot);
 }
 
-/// Objects have neither texture coordinates nor tangents nor colours; where the scene has them they get blank ones.
-void pad_vertices(Scene& scene) {
+/// Adds an object to a scene that may have texture coordinates, tangents or colours: its own are blank.
+void add_blank(Scene& scene, const std::string& name, const Mesh& mesh, const Material& material) {
+  add_object(scene, name, mesh, add_material(scene, material));
   const size_t count = scene.positions.size();
   if (!scene.tangents.empty()) scene.tangents.resize(count, glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
   for (auto& uv : scene.uv)
@@ -44,76 +46,101 @@ void pad_vertices(Scene& scene) {
   if (!scene.colors.empty()) scene.colors.resize(count, glm::vec4(1.0f));
 }
 
-void add_dynamic(Scene& scene, const std::string& name, const Mesh& mesh, float degrees) {
-  add_object(scene, name, mesh, add_material(scene, glossy(name, degrees)));
-  scene.objects.back().dynamic = true;
-  pad_vertices(scene);
-}
+/// A dynamic object of all scenes.
+struct Statue {
+  const char* file;
+  float degrees;  ///< half-angle of its specular cone
+  std::optional<Mesh> mesh{};
+};
 
-/// The three objects side by side on the floor in front of the camera.
-void add_objects(StudyScene& scene, const std::filesystem::path& assets, float height, const glm::vec3& middle,
-                 const glm::vec3& side, std::vector<std::string>& skipped) {
-  struct Statue {
-    const char* file;
-    float degrees;
-  };
-  constexpr std::array statues = {Statue{"happy_buddha_100k", 45.0f}, Statue{"stanford_dragon_100k", 27.0f},
-                                  Statue{"stanford_bunny", 9.0f}};
-  float place = -1.0f;
-  for (const Statue& statue : statues) {
+std::vector<Statue> load_statues(const std::filesystem::path& assets, std::vector<std::string>& skipped) {
+  std::vector<Statue> statues = {
+      {"happy_buddha_100k", 45.0f}, {"stanford_dragon_100k", 27.0f}, {"stanford_bunny", 9.0f}};
+  for (Statue& statue : statues) {
     const std::filesystem::path file = assets / "assets/objects" / (std::string(statue.file) + ".glb");
     if (!assets.empty() && std::filesystem::exists(file))
-      add_dynamic(scene.scene, statue.file, stood(mesh_of(load_gltf(file)), height, middle + place * side),
-                  statue.degrees);
-    else if (std::find(skipped.begin(), skipped.end(), statue.file) == skipped.end())
-      skipped.emplace_back(statue.file);
-    place += 1.0f;
+      statue.mesh = mesh_of(load_gltf(file));
+    else
+      skipped.push_back(std::string(statue.file) + ": not in VOXREF_ASSETS");
   }
+  return statues;
 }
 
-void set_light(Scene& scene, ThesisLight light, const glm::vec3& lamp, float intensity) {
-  if (light == ThesisLight::sun)
-    scene.lights = {sun("sun", {0.25f, -1.0f, 0.15f}, glm::vec3(1.0f))};
-  else
-    scene.lights = {point_light("lamp", lamp, glm::vec3(intensity))};
+/// Where the statues stand, side by side on the floor in front of the camera; metres.
+struct Place {
+  const char* scene;
+  float height;
+  glm::vec3 middle, side;
+};
+constexpr std::array places = {
+    Place{"cornell_box", 0.12f, {0.28f, 0.0f, 0.1f}, {0.15f, 0.0f, 0.0f}},
+    Place{"sibenik", 1.8f, {-9.0f, -15.3f, 0.0f}, {0.0f, 0.0f, 2.0f}},
+    Place{"conference", 0.5f, {0.0f, 0.0f, -1.0f}, {0.6f, 0.0f, 0.0f}},
+    Place{"sponza", 2.0f, {-6.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}},
+};
+
+void add_statues(StudyScene& scene, const std::vector<Statue>& statues) {
+  const auto place = std::find_if(places.begin(), places.end(), [&](const Place& p) { return scene.name == p.scene; });
+  float position = -1.0f;
+  for (const Statue& statue : statues) {
+    if (statue.mesh) {
+      add_blank(scene.scene, statue.file, stood(*statue.mesh, place->height, place->middle + position * place->side),
+                glossy(statue.file, statue.degrees));
+      scene.scene.objects.back().dynamic = true;
+    }
+    position += 1.0f;
+  }
 }
 
 }  // namespace
 
-std::vector<StudyScene> thesis_scenes(const StudyRequest& request, ThesisLight light,
-                                      std::vector<std::string>& skipped) {
+std::vector<StudyScene> thesis_scenes(const StudyRequest& request, std::vector<std::string>& skipped) {
+  const std::vector<Statue> statues = load_statues(request.assets, skipped);
   std::vector<StudyScene> scenes;
-  StudyScene box = cornell_point_scene();
-  box.name = "cornell_box";
-  set_light(box.scene, light, {0.278f, 0.45f, 0.28f}, 1.0f);
-  add_objects(box, request.assets, 0.12f, {0.28f, 0.0f, 0.1f}, {0.15f, 0.0f, 0.0f}, skipped);
-  scenes.push_back(std::move(box));
-  struct Place {
-    const char* name;
-    float height;
-    glm::vec3 middle, side, lamp;
-  };
-  constexpr std::array places = {
-      Place{"sibenik", 1.8f, {-9.0f, -15.3f, 0.0f}, {0.0f, 0.0f, 2.0f}, {-4.0f, -8.0f, 0.0f}},
-      Place{"conference", 0.5f, {0.0f, 0.0f, -1.0f}, {0.6f, 0.0f, 0.0f}, {1.0f, 2.2f, -0.8f}},
-      Place{"sponza", 2.0f, {-6.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}, {0.0f, 5.0f, 0.0f}},
-  };
   for (const Place& place : places) {
-    auto scene = public_scene(place.name, request.assets, light == ThesisLight::sun);
-    if (!scene) {
-      if (std::find(skipped.begin(), skipped.end(), place.name) == skipped.end()) skipped.emplace_back(place.name);
+    if (place.scene == std::string("cornell_box")) {
+      scenes.push_back(cornell_point_scene());
+      scenes.back().name = place.scene;
+    } else if (request.quick) {
+      skipped.push_back(std::string(place.scene) + ": too large for --quick");
+      continue;
+    } else if (auto scene = public_scene(place.scene, request.assets, /*sun=*/true)) {
+      scenes.push_back(std::move(*scene));
+    } else {
+      skipped.push_back(std::string(place.scene) + ": not in VOXREF_ASSETS");
       continue;
     }
-    set_light(scene->scene, light, place.lamp, 1.0f);
-    add_objects(*scene, request.assets, place.height, place.middle, place.side, skipped);
-    scenes.push_back(std::move(*scene));
+    add_statues(scenes.back(), statues);
   }
+  StudyScene empty{"cornell_box_empty", cornell_box(CornellLight::point, /*blocks=*/false), {}};
+  empty.view.camera = empty.scene.cameras.at(0);
+  scenes.insert(scenes.begin() + 1, std::move(empty));
   return scenes;
 }
 
+void light_scenes(std::vector<StudyScene>& scenes, ThesisLight light) {
+  constexpr float published_unit = 1.0f;  // its lights fade with no distance
+  const glm::vec3 box_lamp = cornell_point_scene().scene.lights.at(0).position;
+  for (StudyScene& scene : scenes) {
+    const bool box = scene.name.starts_with("cornell_box");
+    if (light == ThesisLight::sun)
+      scene.scene.lights = {study_sun(published_unit)};
+    else
+      scene.scene.lights = {
+          point_light("lamp", box ? box_lamp : standpoint(scene.name).lamp, glm::vec3(published_unit))};
+  }
+}
+
+namespace {
+
+StudyScene seen_from(const std::string& name, Scene scene) {
+  StudyScene result{name, std::move(scene), {}};
+  result.view.camera = result.scene.cameras.at(0);
+  return result;
+}
+
 StudyScene glowing_teapot() {
-  StudyScene result{"glowing_teapot", {}, {}};
-  Scene& scene = result.scene;
+  Scene scene;
   const uint32_t grey = add_material(scene, lambertian("grey", glm::vec3(0.7f)));
   const uint32_t glow = add_material(scene, emitter("teapot", glm::vec3(0.0f), glm::vec3(1.0f)));
   add_object(scene, "floor", plane(4.0f), grey);
@@ -121,8 +148,51 @@ StudyScene glowing_teapot() {
   add_object(scene, "right", box({0.8f, 0.0f, -0.4f}, {1.2f, 0.8f, 0.4f}), grey);
   add_object(scene, "teapot", mesh_of(single_object("teapot")), glow);
   scene.cameras.push_back(camera("front", {0.0f, 1.6f, 3.2f}, {0.0f, 0.3f, 0.0f}, 45.0f, 16.0f / 9.0f));
-  result.view.camera = scene.cameras[0];
-  return result;
+  return seen_from("teapot", std::move(scene));
+}
+
+void add_glowing_ball(Scene& scene, const glm::vec3& center, float radius, const glm::vec3& color) {
+  add_blank(scene, "ball", moved(scaled(icosphere(3), radius), center), emitter("ball", glm::vec3(0.0f), color));
+}
+
+/// Three balls side by side in place of all lights.
+Scene with_colored_balls(Scene scene, const glm::vec3& middle, const glm::vec3& side, float radius, float radiance) {
+  scene.lights.clear();
+  for (int i = 0; i < 3; ++i) {
+    glm::vec3 color(0.0f);
+    color[i] = radiance;
+    add_glowing_ball(scene, middle + float(i - 1) * side, radius, color);
+  }
+  return scene;
+}
+
+StudyScene two_emitters() {
+  Scene scene;
+  const uint32_t white = add_material(scene, lambertian("white", glm::vec3(0.7f)));
+  add_object(scene, "floor", plane(4.0f), white);
+  add_object(scene, "block", box({-0.2f, 0.0f, -0.6f}, {0.2f, 0.9f, 0.6f}), white);
+  add_glowing_ball(scene, {-1.2f, 0.5f, 0.0f}, 0.25f, {3.0f, 0.3f, 0.3f});
+  add_glowing_ball(scene, {1.2f, 0.5f, 0.0f}, 0.25f, {0.3f, 0.3f, 3.0f});
+  scene.cameras.push_back(camera("above", {0.0f, 3.0f, 3.0f}, {0.0f, 0.2f, 0.0f}, 45.0f, 16.0f / 9.0f));
+  return seen_from("two_emitters", std::move(scene));
+}
+
+}  // namespace
+
+std::vector<StudyScene> glowing_scenes(const std::vector<StudyScene>& scenes) {
+  std::vector<StudyScene> glowing = {glowing_teapot()};
+  glowing.push_back(
+      seen_from("colored_cornell_box", with_colored_balls(cornell_box(CornellLight::point, false),
+                                                          {0.28f, 0.15f, 0.28f}, {0.16f, 0.0f, 0.0f}, 0.05f, 3.0f)));
+  for (const StudyScene& scene : scenes)
+    if (scene.name == "sponza") {
+      glowing.push_back(scene);
+      glowing.back().name = "colored_sponza";
+      glowing.back().scene =
+          with_colored_balls(std::move(glowing.back().scene), {-2.0f, 2.0f, 0.0f}, {4.0f, 0.0f, 0.0f}, 0.7f, 20.0f);
+    }
+  glowing.push_back(two_emitters());
+  return glowing;
 }
 
 StudyScene specular_ball(float degrees) {

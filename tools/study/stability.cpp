@@ -1,0 +1,39 @@
+#include "study/stability.h"
+
+#include <utility>
+
+namespace voxref {
+
+std::vector<Failure (*)()> failures() {
+  return {leak_by_level,    leak_between_rooms, contact_gap,   step_dependence, step_bands, cone_bands,
+          flicker,          camera_flicker,     rotation,      scale,           distance,   clamping,
+          opposite_normals, specular_blur,      feedback_gain, cone_gaps,       odd_scenes};
+}
+
+// A curve takes a second: there is nothing to leave out under --quick.
+StudyResult run_stability(const StudyRequest& request) {
+  StudyResult result{"stability", "where the method breaks", {}, {}};
+  Table thresholds{"stability_thresholds",
+                   "What regression tests hold",
+                   {{"threshold", ""}, {"value", ""}, {"unit", ""}, {"worse", ""}, {"meaning", ""}},
+                   {}};
+  for (const auto& measure : failures()) {
+    request.progress.check();
+    result.sections.push_back(timed_section("", [&](Section& section) {
+      Failure failure = measure();
+      section.title = failure.title;
+      section.text = failure.text;
+      for (const Threshold& t : failure.thresholds)
+        thresholds.add({t.name, t.value, t.unit, t.worse == Worse::larger ? "larger" : "smaller", t.meaning});
+      section.charts = std::move(failure.charts);
+      section.tables.push_back(std::move(failure.table));
+    }));
+  }
+  result.sections.push_back(timed_section("Thresholds", [&](Section& section) {
+    section.text = "tests/stability holds each of them to a limit: none may get worse.";
+    section.tables.push_back(std::move(thresholds));
+  }));
+  return result;
+}
+
+}  // namespace voxref
