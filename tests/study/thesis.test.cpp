@@ -109,7 +109,7 @@ TEST_CASE("Published rows are each a scene and resolution of their own, and add 
 TEST_CASE("The study of the thesis has every table and figure, with the published numbers beside", "[study][thesis]") {
   StudyRequest request;
   request.quick = true;
-  ThesisSizes sizes{{16, 32, 64}, 64, 16, 24, 16, 64};
+  ThesisSizes sizes{{16, 32, 64}, 64, 16, 24, 16, 128};
   sizes.spp = 4;
   const StudyResult result = thesis_study(request, sizes);
   REQUIRE(result.sections.size() == 8);
@@ -135,7 +135,7 @@ TEST_CASE("The study of the thesis has every table and figure, with the publishe
   CHECK(words(cones, "line") == std::set<std::string>{"16x16", "24x24", "0.1", "0.25", "0.5", "1", "2.5"});
   CHECK(table_of(result, "thesis_apertures").rows.size() == 4);
   CHECK(words(table_of(result, "thesis_quality"), "change") ==
-        std::set<std::string>{"bounce", "32 voxels", "16 voxels", "8 voxels", "step 1", "step 2.5"});
+        std::set<std::string>{"bounce", "64 voxels", "32 voxels", "16 voxels", "step 1", "step 2.5"});
   CHECK(words(table_of(result, "thesis_specular"), "change") ==
         std::set<std::string>{"step 0.25", "step 0.5", "step 1", "step 2.5"});
   CHECK(words(table_of(result, "thesis_emission"), "scene") ==
@@ -145,7 +145,7 @@ TEST_CASE("The study of the thesis has every table and figure, with the publishe
 }
 
 TEST_CASE("A picture differs visibly from that of another resolution, step or bounce, by shares", "[study][thesis]") {
-  ThesisSizes sizes{{16, 32}, 32, 16, 24, 32, 64};
+  const ThesisSizes sizes{{16, 32}, 32, 16, 24, 32, 128};
   const Section quality = thesis_quality({cornell_point_scene()}, sizes, {});
   const Table& changes = quality.tables[0];
   for (size_t i = 0; i < changes.rows.size(); ++i) {

@@ -87,7 +87,7 @@ Section thesis_apertures(const ThesisSizes& sizes, const Progress& progress) {
     Chart times{"thesis_apertures",
                 "Time of an image by the aperture of its cones",
                 {"half-angle / degrees", true, {}, {}, {}},
-                {"time / s", false, 0.0, {}, {}},
+                {"processor time / s", false, 0.0, {}, {}},
                 {}};
     for (const std::string column : {"specular", "shadow"}) {
       Series series{column, ChartStyle::line_points, {}};

@@ -1,7 +1,7 @@
 #include "study/thesis_bench.h"
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <utility>
 
 #include "study/study_scenes.h"
@@ -11,11 +11,12 @@ namespace voxref {
 
 namespace {
 
+/// Of the processor, all threads together: what other programs take of it does not count.
 template <class Work>
 double seconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 constexpr int two_pixels = 2;  // wide
@@ -46,6 +47,14 @@ LitVoxels PreparedScene::lit(const Settings& settings) const {
   return light_voxels(scene_.scene, caster_, surfaces_, glm::vec3(0.0f), settings, nullptr, progress_);
 }
 
+Timing PreparedScene::shading_timing(const Settings& settings) const {
+  const auto round = [&] {
+    return std::vector<double>{
+        seconds_of([&] { shade(scene_.scene, &caster_, surfaces_, settings.light, settings.shade, progress_); })};
+  };
+  return repeated(round).front();
+}
+
 Image PreparedScene::image(const Settings& settings, const LitVoxels& volume, int width) const {
   return gather_image(scene_.scene, caster_, sized(scene_.view, width), settings, volume, progress_).image.image;
 }
@@ -71,19 +80,31 @@ StageTimings measure_stages(const StudyScene& scene, int resolution, int width, 
     const double clear = seconds_of([&] { frame = fixed; });
     const double dynamic =
         seconds_of([&] { frame = add_dynamic(scene.scene, std::move(frame), settings.voxelize, progress); });
-    // The published storage. What the texels hold does not change the time.
-    const std::vector<glm::vec3> grey(frame.size(), glm::vec3(0.5f));
-    const double mipmap_again = seconds_of([&] { mipmap<Rgba8>(frame, grey, settings.mipmap, progress); });
-    const LitVoxels lit =
-        light_voxels(scene.scene, caster, std::move(frame), glm::vec3(0.0f), settings, nullptr, progress);
-    result.bytes = lit.bytes.at("total");
+    Shading shading;
+    Clamping clamped;
+    const double shade_seconds = seconds_of([&] {
+      shading = shade(scene.scene, &caster, frame, settings.light, settings.shade, progress);
+      for (glm::vec3& radiance : shading.radiance) radiance = clamped.store<Rgba8>(radiance);
+    });
+    Pyramid8 pyramid;
+    const auto filter = [&] { pyramid = mipmap<Rgba8>(frame, shading.radiance, settings.mipmap, progress); };
+    const double first_mipmap = seconds_of(filter), second_mipmap = seconds_of(filter);
+    const double both = seconds_of([&] {
+      pyramid = bounce(frame, shading.radiance, std::move(pyramid), settings.bounce, settings.render.cone,
+                       settings.mipmap, glm::vec3(0.0f), progress)
+                    .pyramid;
+    });
+    result.bytes = predict_bytes(frame, settings).at("total");
+    LitVoxels lit;
+    lit.grid = grid;
+    lit.volume = lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
     const auto image = [&](int pixels) {
       return seconds_of([&] { gather_image(scene.scene, caster, sized(scene.view, pixels), settings, lit, progress); });
     };
     const double fixed_part = image(two_pixels), cones = std::max(0.0, image(width) - fixed_part);
-    const double bounce = std::max(0.0, lit.seconds.bounce - mipmap_again);
-    std::vector<double> seconds = {fixed_seconds,      clear,  dynamic,      lit.seconds.shade,
-                                   lit.seconds.mipmap, bounce, mipmap_again, cones};
+    const double bounce_alone = std::max(0.0, both - second_mipmap);
+    std::vector<double> seconds = {fixed_seconds, clear,        dynamic,       shade_seconds,
+                                   first_mipmap,  bounce_alone, second_mipmap, cones};
     double total = 0.0;
     for (size_t i = 1; i < seconds.size(); ++i) total += seconds[i];
     seconds.push_back(total);

@@ -21,6 +21,8 @@ Settings thesis_settings(int resolution);
 /// The shadow tests' (4.7, 4.8): the same without bounce; the voxels' and the pixels' shadows are to be chosen.
 Settings thesis_shadow_settings(int resolution);
 
+// Seconds are the processor's, all threads together, so that they do not depend on what else the machine does.
+
 /// One scene voxelized: the stages that follow share it.
 class PreparedScene {
  public:
@@ -28,6 +30,8 @@ class PreparedScene {
   PreparedScene(const StudyScene& scene, const Settings& settings, const Progress& progress);
 
   LitVoxels lit(const Settings& settings) const;
+  /// Seconds of shading the voxels.
+  Timing shading_timing(const Settings& settings) const;
   Image image(const Settings& settings, const LitVoxels& volume, int width) const;
   /// Seconds of an image's pixels: less what an image two pixels wide takes, which is the G-buffer's own acceleration
   /// structure (a GPU rasterizes).

@@ -83,13 +83,10 @@ Section thesis_shadow_times(const std::vector<StudyScene>& lamps, const ThesisSi
       const ThesisCones p = published_of(scene.name);
       Settings settings = thesis_shadow_settings(sizes.base);
       const PreparedScene prepared(scene, settings, progress);
-      const auto shading = [&] {
-        return repeated([&] { return std::vector{prepared.lit(settings).seconds.shade}; })[0];
-      };
-      const Timing open = shading();
+      const Timing open = prepared.shading_timing(settings);
       const Timing none = prepared.image_timing(settings, prepared.lit(settings), sizes.width_720);
       settings.shade.shadow = VoxelShadow::volume;
-      const Timing through = shading();
+      const Timing through = prepared.shading_timing(settings);
       settings.render.pixel.shadow = PixelShadow::visibility;
       const LitVoxels lit = prepared.lit(settings);
       const Timing visibility = prepared.image_timing(settings, lit, sizes.width_720);

@@ -108,7 +108,8 @@ Section thesis_stage_times(const std::vector<StudyScene>& scenes, const ThesisSi
     const Shape scene_shape = by_scene(measured, sizes), resolution_shape = by_resolution(measured, sizes);
     section.text =
         fmt::format(
-            "The published rules, under a sun without traced shadows, {} pixels wide in place of 1280. Clearing "
+            "The published rules, under a sun without traced shadows, {} pixels wide in place of 1280. Seconds are the "
+            "processor's, all threads together: what other programs take does not count. Clearing "
             "what was dynamic is here taking the static voxels over. The second mipmap is measured alone, and "
             "taken off the bounce, which it is a part of.\n\nBy scene, {} voxels:\n\n",
             sizes.width_720, sizes.base) +
