@@ -106,6 +106,13 @@ TEST_CASE("Published rows are each a scene and resolution of their own, and add 
   }
 }
 
+TEST_CASE("The published memory is a constant and a dense volume", "[study][thesis]") {
+  for (const ThesisMemory& row : thesis_memory) {
+    const double side = row.voxels / 64.0;
+    CHECK(row.megabytes == Approx(211.6 + 5.14 * side * side * side).epsilon(0.02));  // 2800 is given to two digits
+  }
+}
+
 TEST_CASE("The study of the thesis has every table and figure, with the published numbers beside", "[study][thesis]") {
   StudyRequest request;
   request.quick = true;
