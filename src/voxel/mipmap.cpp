@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "parallel.h"
 
@@ -10,8 +11,7 @@ namespace voxref {
 namespace {
 
 /// The children of a texel; child x + 2 y + 4 z by its position in the 2x2x2 block.
-template <class Texel>
-using Block = std::array<Texel, 8>;
+using Block = std::array<Float4, 8>;
 
 /// Children at the positive end of the four columns along each axis, in the order in which the published shaders add
 /// them (spec section 4): float sums then have the same bits.
@@ -30,18 +30,35 @@ template <class Texel>
 Float4 seen(const Directional<Texel>& texel, size_t face) {
   return decode(texel[face]);
 }
+/// @param corner first texel of the block, in its brick
 template <class Below>
-Block<Float4> seen(const Block<Below>& block, size_t face) {
-  Block<Float4> result;
-  for (size_t i = 0; i < block.size(); ++i) result[i] = seen(block[i], face);
-  return result;
+Block seen_block(const Below* corner, size_t face) {
+  constexpr size_t side = BrickVolume<Below>::side;
+  Block block;
+  for (size_t i = 0; i < block.size(); ++i)
+    block[i] = seen(corner[(i & 1) + side * (i >> 1 & 1) + side * side * (i >> 2)], face);
+  return block;
+}
+
+/// Whether nothing is stored in a block: this asks no texel for its channels.
+template <class Below>
+bool is_empty(const Below* corner) {
+  constexpr size_t side = BrickVolume<Below>::side;
+  using Row = std::array<uint64_t, 2 * sizeof(Below) / sizeof(uint64_t)>;  // two texels
+  uint64_t any = 0;
+  for (const size_t begin : {size_t{0}, side, side * side, side * side + side}) {
+    Row row;
+    std::memcpy(row.data(), corner + begin, sizeof row);
+    for (const uint64_t word : row) any |= word;
+  }
+  return any == 0;
 }
 
 /// One face of a texel. Rounding never lifts opacity above 1: with the sum of the columns before at most c, a whole
 /// number, the next is at most round(round(c + f) + round(1 - f)) where f is the front's opacity; the three roundings
 /// together miss c + 1 by at most half a unit in its last place (both addends are multiples of 2^-24, and ties go to
 /// the even c + 1).
-Float4 filter_face(const Block<Float4>& block, size_t face) {
+Float4 filter_face(const Block& block, size_t face) {
   const size_t axis = face / 2, along = size_t{1} << axis;
   const bool negative = face % 2 == 0;  // towards the negative side a ray meets the higher coordinate first
   Float4 sum{};
@@ -54,24 +71,24 @@ Float4 filter_face(const Block<Float4>& block, size_t face) {
 }
 
 template <class Texel>
-Directional<Texel> filter_anisotropic(const Block<Texel>& base) {
-  const Block<Float4> block = seen(base, 0);  // decoded once for all faces
+Directional<Texel> filter_anisotropic(const Texel* corner) {
+  const Block block = seen_block(corner, 0);  // decoded once for all faces
   Directional<Texel> result;
   for (size_t face = 0; face < result.size(); ++face) result[face] = encode<Texel>(filter_face(block, face));
   return result;
 }
 template <class Texel>
-Directional<Texel> filter_anisotropic(const Block<Directional<Texel>>& texels) {
+Directional<Texel> filter_anisotropic(const Directional<Texel>* corner) {
   Directional<Texel> result;
   for (size_t face = 0; face < result.size(); ++face)
-    result[face] = encode<Texel>(filter_face(seen(texels, face), face));
+    result[face] = encode<Texel>(filter_face(seen_block(corner, face), face));
   return result;
 }
 
 template <class Texel, class Below>
-Directional<Texel> filter_isotropic(const Block<Below>& texels) {
+Directional<Texel> filter_isotropic(const Below* corner) {
   Float4 sum{};
-  for (const Below& texel : texels) sum += seen(texel, 0);
+  for (const Float4& texel : seen_block(corner, 0)) sum += texel;
   Directional<Texel> result;
   result.fill(encode<Texel>(0.125f * sum));
   return result;
@@ -98,14 +115,10 @@ void filter_octant(std::span<const Below, BrickVolume<Below>::texels_per_brick> 
   for (int z = 0; z < half; ++z)
     for (int y = 0; y < half; ++y)
       for (int x = 0; x < half; ++x) {
-        Block<Below> block;
-        for (int i = 0; i < 8; ++i) {
-          const glm::ivec3 corner(i & 1, (i >> 1) & 1, i >> 2);
-          block[size_t(i)] = fine[BrickVolume<Below>::offset(2 * glm::ivec3(x, y, z) + corner)];
-        }
-        if (block == Block<Below>{}) continue;
+        const Below* corner = &fine[BrickVolume<Below>::offset(2 * glm::ivec3(x, y, z))];
+        if (is_empty(corner)) continue;
         coarse[BrickVolume<Texel>::offset(half * octant + glm::ivec3(x, y, z))] =
-            filter == MipmapFilter::anisotropic ? filter_anisotropic(block) : filter_isotropic<Texel>(block);
+            filter == MipmapFilter::anisotropic ? filter_anisotropic(corner) : filter_isotropic<Texel>(corner);
       }
 }
 
