@@ -67,15 +67,22 @@ AverageEnvelope bounded_envelope(std::span<const float> values) {
           uint8_t(std::min(greatest, std::floor(mean + rounding))), false};
 }
 
+/// A fragment on its own.
+struct VoxelFragment {
+  glm::ivec3 voxel;
+  FragmentValue value;
+};
+
 bool before(const VoxelFragment& a, const VoxelFragment& b) {
   return std::tie(a.voxel.z, a.voxel.y, a.voxel.x) < std::tie(b.voxel.z, b.voxel.y, b.voxel.x);
 }
 
-std::array<AverageEnvelope, 3> envelopes(std::span<const VoxelFragment> fragments, glm::vec3 VoxelFragment::*value) {
+std::array<AverageEnvelope, 3> envelopes(std::span<const VoxelFragment> fragments, glm::vec3 FragmentValue::*value) {
   std::array<AverageEnvelope, 3> result;
   std::vector<float> values(fragments.size());
   for (int channel = 0; channel < 3; ++channel) {
-    std::ranges::transform(fragments, values.begin(), [&](const VoxelFragment& f) { return (f.*value)[channel]; });
+    std::ranges::transform(fragments, values.begin(),
+                           [&](const VoxelFragment& f) { return (f.value.*value)[channel]; });
     result[size_t(channel)] = average_envelope(values);
   }
   return result;
@@ -88,11 +95,13 @@ std::vector<VoxelFragment> sorted_fragments(const Scene& scene, const Grid& grid
   std::vector<VoxelFragment> all;
   for (const bool dynamic : {false, true}) {
     const size_t fixed = all.size();
-    for (const std::vector<VoxelFragment>& chunk : draw_fragments(scene, grid, dynamic, progress))
-      for (const VoxelFragment& fragment : chunk)
+    for (const VoxelFragments& chunk : draw_fragments(scene, grid, dynamic, progress))
+      for (const VoxelFragments::Fragment& drawn : chunk.fragments) {
+        const VoxelFragment fragment{glm::ivec3(drawn.voxel), chunk.values[drawn.value]};
         if (!dynamic || !static_wins ||
             !std::binary_search(all.begin(), all.begin() + std::ptrdiff_t(fixed), fragment, before))
           all.push_back(fragment);
+      }
     if (!dynamic) std::stable_sort(all.begin(), all.end(), before);
   }
   std::stable_sort(all.begin(), all.end(), before);
@@ -126,8 +135,8 @@ std::vector<VoxelEnvelope> raster_envelopes(const Scene& scene, const Grid& grid
     progress.check();
     for (size_t i = begin; i < end; ++i) {
       const std::span<const VoxelFragment> own(fragments.data() + first[i], first[i + 1] - first[i]);
-      result[i] = {own[0].voxel, uint8_t(own.size()), envelopes(own, &VoxelFragment::albedo),
-                   envelopes(own, &VoxelFragment::normal), envelopes(own, &VoxelFragment::emission)};
+      result[i] = {own[0].voxel, uint8_t(own.size()), envelopes(own, &FragmentValue::albedo),
+                   envelopes(own, &FragmentValue::normal), envelopes(own, &FragmentValue::emission)};
     }
   });
   return result;

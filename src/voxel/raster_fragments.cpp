@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "parallel.h"
 #include "scene/phong_material.h"
@@ -43,18 +44,22 @@ class FragmentShader {
     return result;
   }
 
-  /// Adds what the pixel writes, if anything.
-  void operator()(uint32_t triangle, const RasterFragment& pixel, std::vector<VoxelFragment>& written) const {
-    if (!grid_.contains(pixel.voxel)) return;
+  /// What the pixel writes, if anything.
+  std::optional<FragmentValue> operator()(uint32_t triangle, const RasterFragment& pixel) const {
     const uint32_t index = scene_.triangle_materials[triangle];
     const Material& material = scene_.materials[index];
     const glm::vec4 texel = texture(bindings_[index], pixel.uv);
     const float opacity = material.base_color.a * texel.a;
-    if (!(opacity > 0.0f)) return;
+    if (!(opacity > 0.0f)) return std::nullopt;
     const glm::vec3 color(texel);
-    written.push_back({pixel.voxel, diffuse(material, pixel.uv) * color * opacity,
-                       0.5f * glm::normalize(pixel.normal) + 0.5f, material.emission * color});
+    return FragmentValue{diffuse(material, pixel.uv) * color * opacity, 0.5f * glm::normalize(pixel.normal) + 0.5f,
+                         material.emission * color};
   }
+  bool textured(uint32_t triangle) const {
+    const uint32_t index = scene_.triangle_materials[triangle];
+    return bindings_[index] || scene_.materials[index].metallic_roughness_texture;
+  }
+  const Grid& grid() const { return grid_; }
 
  private:
   glm::vec4 texture(const TextureBinding& binding, const glm::vec2& uv) const {
@@ -70,10 +75,42 @@ class FragmentShader {
   std::vector<TextureBinding> bindings_;  // of the base colour, one per material
 };
 
+/// Writes the pixels of one triangle.
+class FragmentWriter {
+ public:
+  FragmentWriter(const FragmentShader& shader, uint32_t triangle, VoxelFragments& written)
+      : shader_(shader), triangle_(triangle), textured_(shader.textured(triangle)), written_(written) {}
+
+  void operator()(const RasterFragment& pixel) {
+    if (!shader_.grid().contains(pixel.voxel)) return;
+    if (!shaded_ || !same_value(pixel)) shade(pixel);
+    if (visible_) written_.fragments.push_back({glm::u16vec3(pixel.voxel), uint32_t(written_.values.size() - 1)});
+  }
+
+ private:
+  /// As the pixel that was shaded last.
+  bool same_value(const RasterFragment& pixel) const {
+    return pixel.normal == last_.normal && (!textured_ || pixel.uv == last_.uv);
+  }
+  void shade(const RasterFragment& pixel) {
+    shaded_ = true;
+    last_ = pixel;
+    const std::optional<FragmentValue> value = shader_(triangle_, pixel);
+    visible_ = value.has_value();
+    if (visible_) written_.values.push_back(*value);
+  }
+
+  const FragmentShader& shader_;
+  uint32_t triangle_;
+  bool textured_, shaded_ = false, visible_ = false;
+  RasterFragment last_;
+  VoxelFragments& written_;
+};
+
 }  // namespace
 
-std::vector<std::vector<VoxelFragment>> draw_fragments(const Scene& scene, const Grid& grid, bool dynamic,
-                                                       const Progress& progress) {
+std::vector<VoxelFragments> draw_fragments(const Scene& scene, const Grid& grid, bool dynamic,
+                                           const Progress& progress) {
   const RasterViews views(grid);
   const FragmentShader shader(scene, grid);
   std::vector<Rows> tasks;
@@ -85,19 +122,18 @@ std::vector<std::vector<VoxelFragment>> draw_fragments(const Scene& scene, const
             tasks.push_back(
                 {t, row, std::min(row + rows_per_task, triangle->rows()[1]), triangle->most_per_row() * rows_per_task});
 
-  std::vector<std::vector<VoxelFragment>> chunks((tasks.size() + tasks_per_chunk - 1) / tasks_per_chunk);
+  std::vector<VoxelFragments> chunks((tasks.size() + tasks_per_chunk - 1) / tasks_per_chunk);
   std::atomic<size_t> done = 0;
   parallel_for(tasks.size(), tasks_per_chunk, [&](size_t begin, size_t end) {
     progress.check();
-    std::vector<VoxelFragment>& written = chunks[begin / tasks_per_chunk];
+    VoxelFragments& written = chunks[begin / tasks_per_chunk];
     size_t most = 0;
     for (size_t i = begin; i < end; ++i) most += tasks[i].most_fragments;
-    written.reserve(most);  // pages that are not used are never touched
+    written.fragments.reserve(most);  // pages that are not used are never touched
     for (size_t i = begin; i < end; ++i) {
       const Rows& rows = tasks[i];
       const auto triangle = DilatedTriangle::make(shader.triangle(rows.triangle), views);
-      triangle->for_each_fragment(rows.begin, rows.end,
-                                  [&](const RasterFragment& pixel) { shader(rows.triangle, pixel, written); });
+      triangle->for_each_fragment(rows.begin, rows.end, FragmentWriter(shader, rows.triangle, written));
     }
     progress("voxelize", double(done += end - begin) / double(tasks.size()));
   });

@@ -1,10 +1,13 @@
 #include "voxel/voxelize_raster.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "parallel.h"
@@ -21,42 +24,45 @@ struct PlainMean {
   glm::dvec3 albedo{0.0}, normal{0.0}, emission{0.0};  ///< sums
   uint32_t count = 0;
 
-  void add(const VoxelFragment& fragment) {
+  void add(const FragmentValue& fragment) {
     albedo += fragment.albedo;
     normal += fragment.normal;
     emission += fragment.emission;
     ++count;
   }
+  bool empty() const { return count == 0; }
 };
 
 /// The same in the published shaders' bytes.
 struct VoxelAverages {
   RunningAverage8 albedo, normal, emission;
 
-  void add(const VoxelFragment& fragment) {
+  void add(const FragmentValue& fragment) {
     albedo.add(fragment.albedo);
     normal.add(fragment.normal);
     emission.add(fragment.emission);
   }
+  bool empty() const { return albedo.empty(); }
 };
 
 /// Slices of voxels that one task averages.
 constexpr int slices_per_layer = 4;
 
-struct KeyedFragment {
-  uint32_t row;  ///< y + size z, in the layer
-  int x;
-  const VoxelFragment* fragment;
+/// A fragment of a layer.
+struct LayerFragment {
+  uint32_t cell;  ///< voxel x + size x (y + size y z), z from the layer's first slice
+  const FragmentValue* value;
 };
 
 /// Fragments by the layer that they fall in, in draw order within each.
 class Layers {
  public:
-  Layers(const std::vector<std::vector<VoxelFragment>>& chunks, const glm::ivec3& size)
+  /// @param chunks kept by reference
+  Layers(const std::vector<VoxelFragments>& chunks, const glm::ivec3& size)
       : begin_(size_t((size.z + slices_per_layer - 1) / slices_per_layer) + 1) {
     std::vector<std::vector<size_t>> next(chunks.size(), std::vector<size_t>(count()));
     parallel_for(chunks.size(), 1, [&](size_t chunk, size_t) {
-      for (const VoxelFragment& f : chunks[chunk]) ++next[chunk][size_t(f.voxel.z / slices_per_layer)];
+      for (const VoxelFragments::Fragment& f : chunks[chunk].fragments) ++next[chunk][f.voxel.z / slices_per_layer];
     });
     size_t total = 0;
     for (size_t k = 0; k < count(); ++k) {
@@ -65,37 +71,45 @@ class Layers {
     }
     begin_.back() = total;
     fragments_.resize(total);
+    const auto width = uint32_t(size.x), height = uint32_t(size.y);
     parallel_for(chunks.size(), 1, [&](size_t chunk, size_t) {
-      for (const VoxelFragment& f : chunks[chunk])
-        fragments_[next[chunk][size_t(f.voxel.z / slices_per_layer)]++] = {
-            uint32_t(f.voxel.y + size.y * (f.voxel.z % slices_per_layer)), f.voxel.x, &f};
+      for (const VoxelFragments::Fragment& f : chunks[chunk].fragments)
+        fragments_[next[chunk][f.voxel.z / slices_per_layer]++] = {
+            f.voxel.x + width * (f.voxel.y + height * (f.voxel.z % slices_per_layer)), &chunks[chunk].values[f.value]};
     });
   }
   size_t count() const { return begin_.size() - 1; }
-  std::span<KeyedFragment> operator[](size_t k) {
+  std::span<const LayerFragment> operator[](size_t k) const {
     return std::span(fragments_).subspan(begin_[k], begin_[k + 1] - begin_[k]);
   }
 
  private:
   std::vector<size_t> begin_;
-  std::vector<KeyedFragment> fragments_;
+  std::vector<LayerFragment> fragments_;
 };
 
-/// Sorts by a key below `keys`, keeping the order of equals (counting sort).
-template <class Key>
-void sort_stably(std::span<const KeyedFragment> from, std::span<KeyedFragment> to, size_t keys, Key&& key) {
-  std::vector<uint32_t> next(keys + 1);
-  for (const KeyedFragment& f : from) ++next[size_t(key(f)) + 1];
-  for (size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
-  for (const KeyedFragment& f : from) to[next[size_t(key(f))]++] = f;
-}
+/// Which voxels of a layer are occupied: cells as LayerFragment has them, so that their order is z, y, x.
+class CellSet {
+ public:
+  explicit CellSet(size_t cells) : bits_((cells + 63) / 64) {}
+  void add(uint32_t cell) {
+    uint64_t& word = bits_[cell / 64];
+    size_ += ~word >> (cell % 64) & 1u;
+    word |= uint64_t{1} << (cell % 64);
+  }
+  size_t size() const { return size_; }
+  /// Calls visit(cell) for each, in order.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (size_t i = 0; i < bits_.size(); ++i)
+      for (uint64_t word = bits_[i]; word != 0; word &= word - 1)
+        visit(uint32_t(64 * i) + uint32_t(std::countr_zero(word)));
+  }
 
-/// Sorts a layer's fragments by voxel z, y, x, those of one voxel in draw order.
-void sort_by_voxel(std::span<KeyedFragment> fragments, const glm::ivec3& size) {
-  std::vector<KeyedFragment> by_x(fragments.size());
-  sort_stably(fragments, by_x, size_t(size.x), [](const KeyedFragment& f) { return f.x; });
-  sort_stably(by_x, fragments, size_t(size.y * slices_per_layer), [](const KeyedFragment& f) { return f.row; });
-}
+ private:
+  std::vector<uint64_t> bits_;
+  size_t size_ = 0;
+};
 
 constexpr float byte_step = 1.0f / 255.0f;
 
@@ -116,32 +130,6 @@ VoxelAverages restored(const SurfaceGrid& surfaces, size_t i) {
 }
 
 bool earlier(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
-
-constexpr size_t none = ~size_t{0};
-
-/// Merges what was there before with a layer's fragments, which are sorted by voxel. Calls visit(voxel, index in
-/// `before` or none, its fragments) for each voxel that has either, sorted z, y, x.
-template <class Visit>
-void for_each_voxel(const SurfaceGrid& before, size_t layer, std::span<const KeyedFragment> fragments, Visit&& visit) {
-  const auto slice = [](size_t k) { return glm::ivec3(0, 0, int(k) * slices_per_layer); };
-  const auto first = std::lower_bound(before.voxels.begin(), before.voxels.end(), slice(layer), earlier);
-  size_t old = size_t(first - before.voxels.begin());
-  const auto visit_old_until = [&](const glm::ivec3& voxel) {
-    for (; old < before.size() && earlier(before.voxels[old], voxel); ++old)
-      visit(before.voxels[old], old, fragments.subspan(0, 0));
-  };
-  for (size_t i = 0; i < fragments.size();) {
-    size_t end = i + 1;
-    while (end < fragments.size() && fragments[end].row == fragments[i].row && fragments[end].x == fragments[i].x)
-      ++end;
-    const glm::ivec3& voxel = fragments[i].fragment->voxel;
-    visit_old_until(voxel);
-    const bool was_there = old < before.size() && before.voxels[old] == voxel;
-    visit(voxel, was_there ? old++ : none, fragments.subspan(i, end - i));
-    i = end;
-  }
-  visit_old_until(slice(layer + 1));
-}
 
 void allocate(SurfaceGrid& surfaces, size_t count, VoxelAverage average, bool dynamic, bool emits) {
   surfaces.voxels.resize(count);
@@ -171,22 +159,83 @@ void store(SurfaceGrid& surfaces, size_t i, const PlainMean& sums) {
   if (!surfaces.emission.empty()) surfaces.emission[i] = glm::vec3(sums.emission / count);
 }
 
-/// Averages a voxel's fragments into what it held, and stores it as voxel i.
-void average(SurfaceGrid& surfaces, size_t i, const SurfaceGrid& before, size_t old,
-             std::span<const KeyedFragment> fragments, const VoxelizeOptions& options) {
-  const auto add_all = [&](auto averages) {
-    for (const KeyedFragment& keyed : fragments) averages.add(*keyed.fragment);
-    store(surfaces, i, averages);
-  };
-  if (options.average == VoxelAverage::area)
-    add_all(PlainMean{});
-  else if (old == none)
-    add_all(VoxelAverages{});
-  else if (options.static_wins)
-    store(surfaces, i, restored(before, old));
-  else
-    add_all(restored(before, old));
-}
+/// One layer of voxels: what was there before, and the fragments that are added.
+class Layer {
+ public:
+  /// @param before, fragments kept by reference
+  Layer(const SurfaceGrid& before, size_t k, std::span<const LayerFragment> fragments)
+      : before_(before), fragments_(fragments), first_slice_(int(k) * slices_per_layer), cells_(cell_count()) {
+    const auto slice = [&](int z) {
+      return std::lower_bound(before.voxels.begin(), before.voxels.end(), glm::ivec3(0, 0, z), earlier) -
+             before.voxels.begin();
+    };
+    old_begin_ = size_t(slice(first_slice_)), old_end_ = size_t(slice(first_slice_ + slices_per_layer));
+    for (size_t old = old_begin_; old < old_end_; ++old) cells_.add(cell_of(before.voxels[old]));
+    for (const LayerFragment& fragment : fragments) cells_.add(fragment.cell);
+  }
+  size_t voxel_count() const { return cells_.size(); }
+
+  /// Averages the fragments into what the voxels held, and stores them from voxel `first` on.
+  template <class Averages>
+  void store_averages(const VoxelizeOptions& options, SurfaceGrid& surfaces, size_t first) const {
+    // The place of each occupied cell among them. Other places are not read.
+    const auto places = std::make_unique_for_overwrite<uint32_t[]>(cell_count());
+    std::vector<glm::ivec3> voxels;
+    voxels.reserve(voxel_count());
+    const auto width = uint32_t(before_.grid.size.x), height = uint32_t(before_.grid.size.y);
+    uint32_t row = 0;
+    cells_.for_each([&](uint32_t cell) {
+      if (cell - row * width >= width) row = cell / width;
+      places[cell] = uint32_t(voxels.size());
+      voxels.emplace_back(cell - row * width, row % height, first_slice_ + int(row / height));
+    });
+    std::vector<Averages> averages(voxels.size());
+    std::vector<uint8_t> was_there(voxels.size());
+    if constexpr (std::is_same_v<Averages, VoxelAverages>)
+      for (size_t old = old_begin_; old < old_end_; ++old) {
+        const uint32_t place = places[cell_of(before_.voxels[old])];
+        was_there[place] = 1;
+        averages[place] = restored(before_, old);
+      }
+    // Most voxels get one fragment, and most fragments have the same value as the one before.
+    Averages alone;
+    const FragmentValue* alone_of = nullptr;
+    for (const LayerFragment& fragment : fragments_) {
+      const uint32_t place = places[fragment.cell];
+      if (options.static_wins && was_there[place]) continue;
+      if (fragment.value != alone_of) {
+        alone = {};
+        alone.add(*fragment.value);
+        alone_of = fragment.value;
+      }
+      if (averages[place].empty())
+        averages[place] = alone;
+      else
+        averages[place].add(*fragment.value);
+    }
+    for (size_t i = 0; i < voxels.size(); ++i) {
+      surfaces.voxels[first + i] = voxels[i];
+      if (!surfaces.dynamic.empty()) surfaces.dynamic[first + i] = !was_there[i];
+      surfaces.centroid[first + i] = surfaces.grid.center(voxels[i]);
+      store(surfaces, first + i, averages[i]);
+    }
+  }
+
+ private:
+  size_t cell_count() const {
+    const glm::ivec3& size = before_.grid.size;
+    return size_t(size.x) * size_t(size.y) * slices_per_layer;
+  }
+  uint32_t cell_of(const glm::ivec3& voxel) const {
+    const glm::ivec3& size = before_.grid.size;
+    return uint32_t(voxel.x + size.x * (voxel.y + size.y * (voxel.z - first_slice_)));
+  }
+  const SurfaceGrid& before_;
+  std::span<const LayerFragment> fragments_;
+  int first_slice_;
+  size_t old_begin_ = 0, old_end_ = 0;
+  CellSet cells_;
+};
 
 }  // namespace
 
@@ -195,13 +244,12 @@ SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool 
   const Grid& grid = before.grid;
   assert(grid.size.x == grid.size.y && grid.size.x == grid.size.z);
   assert(options.average == VoxelAverage::running_floor8 || before.size() == 0);
-  const std::vector<std::vector<VoxelFragment>> drawn = draw_fragments(scene, grid, dynamic, progress);
-  Layers layers(drawn, grid.size);
+  const std::vector<VoxelFragments> drawn = draw_fragments(scene, grid, dynamic, progress);
+  const Layers layers(drawn, grid.size);
   std::vector<size_t> first(layers.count() + 1);  // voxel of each layer
   parallel_for(layers.count(), 1, [&](size_t k, size_t) {
     progress.check();
-    sort_by_voxel(layers[k], grid.size);
-    for_each_voxel(before, k, layers[k], [&](const glm::ivec3&, size_t, auto) { ++first[k + 1]; });
+    first[k + 1] = Layer(before, k, layers[k]).voxel_count();
   });
   std::partial_sum(first.begin(), first.end(), first.begin());
 
@@ -210,13 +258,11 @@ SurfaceGrid voxelize_raster(const Scene& scene, const SurfaceGrid& before, bool 
   allocate(surfaces, first.back(), options.average, dynamic, scene.has_emission());
   parallel_for(layers.count(), 1, [&](size_t k, size_t) {
     progress.check();
-    size_t i = first[k];
-    for_each_voxel(before, k, layers[k], [&](const glm::ivec3& voxel, size_t old, auto fragments) {
-      surfaces.voxels[i] = voxel;
-      if (dynamic) surfaces.dynamic[i] = old == none;
-      surfaces.centroid[i] = grid.center(voxel);
-      average(surfaces, i++, before, old, fragments, options);
-    });
+    const Layer layer(before, k, layers[k]);
+    if (options.average == VoxelAverage::area)
+      layer.store_averages<PlainMean>(options, surfaces, first[k]);
+    else
+      layer.store_averages<VoxelAverages>(options, surfaces, first[k]);
   });
   return surfaces;
 }
