@@ -1,85 +1,92 @@
 #pragma once
 #include <array>
 #include <glm/vec3.hpp>
+#include <utility>
 
 #include "voxel/brick_volume.h"
 #include "voxel/floor.h"
 
 namespace voxref {
 
-/// The eight texels around a position, x fastest, then y, then z, and where between them it lies.
-template <class Texel>
+/// The eight texels around a position, x fastest, then y, then z.
+template <class T>
 struct Corners {
+  using Texel = T;
+  static constexpr bool rows_together = false;
   std::array<const Texel*, 8> texels;
-  Float4 f;    ///< x, y, z in [0,1]
-  bool empty;  ///< nothing is stored there: do not look at the texels
+  const Texel& operator[](size_t i) const { return *texels[i]; }
 };
 
-/// The eight at which each coordinate is that of `low`, or is greater by `step`, all of which lie in the volume.
-/// @param step 0 or 1 along each axis
-template <class Texel>
-void find_corners(const BrickVolume<Texel>& volume, const glm::ivec3& low, const glm::ivec3& step,
-                  Corners<Texel>& corners) {
+/// The same inside of one brick: the two of a row lie side by side.
+template <class T>
+struct BrickCorners {
+  using Texel = T;
+  static constexpr bool rows_together = true;
+  const Texel* first;
+  const Texel& operator[](size_t i) const {
+    constexpr size_t side = BrickVolume<Texel>::side;
+    return first[(i & 1) + side * (i >> 1 & 1) + side * side * (i >> 2)];
+  }
+};
+
+/// Calls visit(corners) with the eight whose coordinates are those of the lowest or greater by 1, or returns {} where
+/// nothing is stored around them. Two look-ups of three have all eight in one brick, and get BrickCorners.
+/// @param brick that the lowest is in: index in the volume's table @param texel of the lowest, in the brick
+/// @param inner whether the brick has all eight
+template <class Texel, class Visit>
+inline auto visit_corners(const BrickVolume<Texel>& volume, size_t brick, size_t texel, bool inner,
+                          const Visit& visit) {
   using Volume = BrickVolume<Texel>;
   constexpr int side = Volume::side, in_brick = side - 1;
-  static const Texel nothing{};
+  using Result = decltype(visit(Corners<Texel>{}));
+  const uint32_t* slots = volume.slots() + brick;
+  if (inner) {
+    if (*slots == Volume::absent) return Result{};
+    return visit(BrickCorners<Texel>{volume.data() + *slots * Volume::texels_per_brick + texel});
+  }
   const glm::ivec3& bricks = volume.brick_grid();
-  const uint32_t* slots =
-      volume.slots() + (low.x / side + size_t(bricks.x) * (size_t(low.y / side) + size_t(bricks.y) * (low.z / side)));
-  const glm::ivec3 inside(low.x & in_brick, low.y & in_brick, low.z & in_brick);
-  const glm::ivec3 next = inside + step;
-  corners.empty = false;
-  if (((next.x | next.y | next.z) & side) == 0) {  // two look-ups of three have all eight in one brick
-    corners.empty = *slots == Volume::absent;
-    if (corners.empty) return;
-    const Texel* t = volume.data() + *slots * Volume::texels_per_brick + inside.x + side * (inside.y + side * inside.z);
-    const int x = step.x, y = side * step.y, z = side * side * step.z;
-    corners.texels = {t, t + x, t + y, t + y + x, t + z, t + z + x, t + z + y, t + z + y + x};
-    return;
-  }
-  // Of each axis the offsets of the low and the high coordinate, among the slots and in the brick.
-  const size_t slot_x[2] = {0, size_t(next.x >> 3)}, in_x[2] = {size_t(inside.x), size_t(next.x & in_brick)};
-  const size_t slot_y[2] = {0, size_t(next.y >> 3) * size_t(bricks.x)};
-  const size_t in_y[2] = {size_t(side * inside.y), size_t(side * (next.y & in_brick))};
-  const size_t slot_z[2] = {0, size_t(next.z >> 3) * size_t(bricks.x) * size_t(bricks.y)};
-  const size_t in_z[2] = {size_t(side * side * inside.z), size_t(side * side * (next.z & in_brick))};
-  for (size_t i = 0; i < 8; ++i) {
-    const size_t x = i & 1, y = i >> 1 & 1, z = i >> 2;
-    const uint32_t slot = slots[slot_x[x] + slot_y[y] + slot_z[z]];
-    corners.texels[i] = slot == Volume::absent
-                            ? &nothing
-                            : volume.data() + slot * Volume::texels_per_brick + in_x[x] + in_y[y] + in_z[z];
-  }
-}
-
-/// Of a volume whose border texels go on for ever. @param p finite; in texels, centres at half-integers
-template <class Texel>
-Corners<Texel> corners_clamped(const BrickVolume<Texel>& volume, const Float4& p) {
-  // Beyond the outermost centres the weight of the next texel, which does not exist, is 0.
-  const Int4 last = to_int4(volume.size()) - 1;
-  const Float4 q = clamp(p - 0.5f, Float4{}, to_float4(last));
-  const Int4 low = truncated(q);
+  // Of each axis how much further the high coordinate is than the low one, among the slots and in the brick.
+  static const Texel nothing{};
+  const auto further = [](int coordinate, size_t slot_stride, int texel_stride) {
+    return coordinate == in_brick ? std::pair(slot_stride, -in_brick * texel_stride)
+                                  : std::pair(size_t{0}, texel_stride);
+  };
+  const auto [slot_x, in_x] = further(int(texel) & in_brick, 1, 1);
+  const auto [slot_y, in_y] = further(int(texel) / side & in_brick, size_t(bricks.x), side);
+  const auto [slot_z, in_z] = further(int(texel) / (side * side), size_t(bricks.x) * size_t(bricks.y), side * side);
   Corners<Texel> corners;
-  corners.f = q - to_float4(low);
-  find_corners(volume, to_ivec3(low), to_ivec3((low < last) & 1), corners);
-  return corners;
+  for (size_t i = 0; i < 8; ++i) {
+    const bool x = i & 1, y = i >> 1 & 1, z = i >> 2;
+    const uint32_t slot = slots[(x ? slot_x : 0) + (y ? slot_y : 0) + (z ? slot_z : 0)];
+    const size_t own = texel + size_t((x ? in_x : 0) + (y ? in_y : 0) + (z ? in_z : 0));
+    corners.texels[i] = slot == Volume::absent ? &nothing : volume.data() + slot * Volume::texels_per_brick + own;
+  }
+  return visit(corners);
 }
 
-/// Of a volume that is empty outside of its border.
-template <class Texel>
-Corners<Texel> corners_within(const BrickVolume<Texel>& volume, const Float4& p) {
+/// The same by the lowest's coordinates, which are in the volume, and greater ones too.
+template <class Texel, class Visit>
+inline auto visit_corners(const BrickVolume<Texel>& volume, const glm::ivec3& low, const Visit& visit) {
+  constexpr int side = BrickVolume<Texel>::side, in_brick = side - 1;
+  const glm::ivec3 &bricks = volume.brick_grid(), inside(low.x & in_brick, low.y & in_brick, low.z & in_brick);
+  const size_t brick = low.x / side + size_t(bricks.x) * (size_t(low.y / side) + size_t(bricks.y) * (low.z / side));
+  const bool inner = inside.x != in_brick && inside.y != in_brick && inside.z != in_brick;
+  return visit_corners(volume, brick, BrickVolume<Texel>::offset(low), inner, visit);
+}
+
+/// Calls visit(corners, f) with those around p, where f, x, y, z in [0,1], is where between them p lies; or returns {}.
+/// The volume is empty outside of its border. @param p in texels, centres at half-integers
+template <class Texel, class Visit>
+inline auto visit_corners_within(const BrickVolume<Texel>& volume, const Float4& p, const Visit& visit) {
   const Float4 q = p - 0.5f;
   const Int4 low = floor_to_int(q);
   const glm::ivec3 v = to_ivec3(low);
+  const Float4 f = q - to_float4(low);
+  const auto with_f = [&](const auto& corners) { return visit(corners, f); };
+  if (volume.contains(v) && volume.contains(v + 1)) return visit_corners(volume, v, with_f);
   Corners<Texel> corners;
-  corners.f = q - to_float4(low);
-  if (volume.contains(v) && volume.contains(v + 1)) {
-    find_corners(volume, v, glm::ivec3(1), corners);
-    return corners;
-  }
-  corners.empty = false;
   for (int i = 0; i < 8; ++i) corners.texels[size_t(i)] = &volume(v + glm::ivec3(i & 1, i >> 1 & 1, i >> 2));
-  return corners;
+  return with_f(corners);
 }
 
 }  // namespace voxref

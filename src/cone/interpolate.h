@@ -46,36 +46,35 @@ struct OpticalRead : FaceRead {
   }
 };
 
-/// Mixes eight corners; f as in Corners.
-template <class T>
-T mix_corners(const std::array<T, 8>& c, const Float4& f) {
-  const auto mixed = [](const T& a, const T& b, float t) { return a + t * (b - a); };
-  return mixed(mixed(mixed(c[0], c[1], f[0]), mixed(c[2], c[3], f[0]), f[1]),
-               mixed(mixed(c[4], c[5], f[0]), mixed(c[6], c[7], f[0]), f[1]), f[2]);
+/// What each of the eight corners around a position counts for. @param f x, y, z in [0,1]: where between them it lies
+inline std::array<float, 8> corner_shares(const Float4& f) {
+  const Float4 g = 1.0f - f;
+  const Float4 rows = Float4{g[1], f[1], g[1], f[1]} * Float4{g[2], g[2], f[2], f[2]};
+  const Float4 low = rows * g[0], high = rows * f[0];
+  return {low[0], high[0], low[1], high[1], low[2], high[2], low[3], high[3]};
 }
 
-/// The value between corners: of texels that look the same from everywhere,
-template <class Texel, class Read>
-Float4 interpolate(const Corners<Texel>& corners, const Read&) {
-  std::array<Float4, 8> values;
-  for (size_t i = 0; i < 8; ++i) values[i] = Read::value(*corners.texels[i]);
-  return mix_corners(values, corners.f);
-}
-/// and of directional ones, plainly
-template <class Texel, class Read>
-Float4 interpolate_plainly(const Corners<Directional<Texel>>& corners, const Read& read) {
-  std::array<Float4, 8> values;
-  for (size_t i = 0; i < 8; ++i) {
-    const Directional<Texel>& texel = *corners.texels[i];
-    values[i] = read.weights[0] * Read::value(texel[read.faces[0]]) +
-                read.weights[1] * Read::value(texel[read.faces[1]]) +
-                read.weights[2] * Read::value(texel[read.faces[2]]);
+/// The value between corners, which are Corners or BrickCorners. @param shares of the eight corners, summing to 1
+struct PlainKernel {
+  template <class SomeCorners, class Shares, class Read>
+  static Float4 interpolate(const SomeCorners& corners, const Shares& shares, const Read& read) {
+    Float4 sum{};
+    for (size_t i = 0; i < 8; ++i) sum += shares[i] * value(corners[i], read);
+    return sum;
   }
-  return mix_corners(values, corners.f);
-}
-/// or, where the machine has AVX2, two texels at a time, since most of a cone's time goes into it: the results differ
-/// by rounding.
-template <class Texel, class Read>
-Float4 interpolate(const Corners<Directional<Texel>>& corners, const Read& read);
+
+ private:
+  /// Of a texel that looks the same from everywhere,
+  template <class Texel, class Read>
+  static Float4 value(const Texel& texel, const Read&) {
+    return Read::value(texel);
+  }
+  /// and of a directional one.
+  template <class Texel, class Read>
+  static Float4 value(const Directional<Texel>& texel, const Read& read) {
+    return read.weights[0] * Read::value(texel[read.faces[0]]) + read.weights[1] * Read::value(texel[read.faces[1]]) +
+           read.weights[2] * Read::value(texel[read.faces[2]]);
+  }
+};
 
 }  // namespace voxref

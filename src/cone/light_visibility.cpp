@@ -1,6 +1,6 @@
 #include "cone/light_visibility.h"
 
-#include "cone/interpolate.h"
+#include "cone/texel_lanes.h"
 
 namespace voxref {
 
@@ -11,11 +11,14 @@ LightVisibility::LightVisibility(const SurfaceGrid& surfaces, std::span<const fl
 }
 
 float LightVisibility::operator()(const glm::vec3& position) const {
-  const Corners<float> corners = corners_clamped(shares_, to_float4(grid_.to_voxels(position)));
-  if (corners.empty) return 0.0f;
-  std::array<float, 8> shares;
-  for (size_t i = 0; i < 8; ++i) shares[i] = *corners.texels[i];
-  return mix_corners(shares, corners.f);
+  const Float4 p = to_float4(grid_.to_voxels(position));
+  TexelLanes at;
+  locate_clamped(to_int4(shares_.size()) - 1, Int8{}, Float8{} + p[0], Float8{} + p[1], Float8{} + p[2], at);
+  return visit_lane(shares_, at, 0, [](const auto& corners, const auto& share) {
+    float sum = 0.0f;
+    for (size_t i = 0; i < 8; ++i) sum += share[i] * corners[i];
+    return sum;
+  });
 }
 
 }  // namespace voxref

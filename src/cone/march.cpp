@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "cone/interpolate_wide.h"
 #include "cone/lookup.h"
 
 namespace voxref {
@@ -137,11 +138,9 @@ float end_of_gap(const Occupancy& occupied, const Path& path, const Resolution& 
   return std::min({s + gap.length, straight.end, resolution.until(Medium::cell(gap.level))});
 }
 
-}  // namespace
-
-template <class Texel>
-ConeSample march(const BasicMedium<Texel>& medium, const glm::vec3& origin, const glm::vec3& direction,
-                 float tan_half_angle, const OwnPlane& own, const MarchOptions& options, float max_distance) {
+template <class Kernel, class Texel>
+inline ConeSample march_by(const BasicMedium<Texel>& medium, const glm::vec3& origin, const glm::vec3& direction,
+                           float tan_half_angle, const OwnPlane& own, const MarchOptions& options, float max_distance) {
   const Grid& grid = medium.texels.grid;
   const glm::vec3 start = grid.to_voxels(origin);
   const float widening = 2.0f * tan_half_angle * options.texel;
@@ -169,7 +168,7 @@ ConeSample march(const BasicMedium<Texel>& medium, const glm::vec3& origin, cons
       s = std::max(s, end_of_gap(medium.occupied, path, resolution, middle, p, level));
       continue;
     }
-    const Float4 sample = quadrilinear(medium, p, std::log2(side), read);
+    const Float4 sample = quadrilinear<Kernel>(medium, p, std::log2(side), read);
     const float sigma = sample[3];
     if (sigma == 0.0f) continue;
 
@@ -191,6 +190,22 @@ ConeSample march(const BasicMedium<Texel>& medium, const glm::vec3& origin, cons
   result.occlusion = std::min(occlusion, 1.0f);
   if (max_distance == infinity) result.radiance += transmittance * options.background;
   return result;
+}
+
+template <class Texel>
+VOXREF_WIDE_ALL ConeSample march_wide(const BasicMedium<Texel>& medium, const glm::vec3& origin,
+                                      const glm::vec3& direction, float tan_half_angle, const OwnPlane& own,
+                                      const MarchOptions& options, float max_distance) {
+  return march_by<WideKernel>(medium, origin, direction, tan_half_angle, own, options, max_distance);
+}
+
+}  // namespace
+
+template <class Texel>
+ConeSample march(const BasicMedium<Texel>& medium, const glm::vec3& origin, const glm::vec3& direction,
+                 float tan_half_angle, const OwnPlane& own, const MarchOptions& options, float max_distance) {
+  return wide_machine ? march_wide(medium, origin, direction, tan_half_angle, own, options, max_distance)
+                      : march_by<PlainKernel>(medium, origin, direction, tan_half_angle, own, options, max_distance);
 }
 
 template <class Texel>

@@ -25,28 +25,31 @@ void for_each_block(const BitBlocks& bits, Visit&& visit) {
   }
 }
 
-/// Whether any bit is set: this asks no texel for its channels.
-template <class Texel>
-bool holds(const Texel& texel) {
+/// Whether any bit is set in some texels: this asks none for its channels.
+template <size_t count, class Texel>
+bool any_holds(const Texel* texels) {
   static_assert(sizeof(Texel) % sizeof(uint32_t) == 0);
-  std::array<uint32_t, sizeof(Texel) / sizeof(uint32_t)> words;
-  std::memcpy(words.data(), &texel, sizeof(Texel));
+  std::array<uint32_t, count * sizeof(Texel) / sizeof(uint32_t)> words;
+  std::memcpy(words.data(), texels, sizeof words);
   uint32_t any = 0;
   for (const uint32_t word : words) any |= word;
   return any != 0;
 }
 
-/// Adds the texels that hold something.
+/// Adds the texels that hold something. Most rows of a brick are empty.
 template <class Texel>
 void add_texels(const BrickVolume<Texel>& volume, BitBlocks& texels) {
   for (int i = 0; i < count(volume.brick_grid()); ++i) {
     const glm::ivec3 at = block_at(volume.brick_grid(), i);
     const uint32_t slot = volume.slot(at);
     if (slot == volume.absent) continue;
-    const Texel* texel = volume.brick(slot).data();
+    const Texel* row = volume.brick(slot).data();
     for (int z = 0; z < side; ++z) {
       uint64_t slice = 0;
-      for (int bit = 0; bit < side * side; ++bit, ++texel) slice |= uint64_t{holds(*texel)} << bit;
+      for (int y = 0; y < side; ++y, row += side) {
+        if (!any_holds<side>(row)) continue;
+        for (int x = 0; x < side; ++x) slice |= uint64_t{any_holds<1>(row + x)} << (x + side * y);
+      }
       texels.set(at, z, slice);
     }
   }
@@ -85,7 +88,6 @@ BitBlocks cells_around(const BitBlocks& texels, const glm::ivec3& size) {
     for (int z = 0; z < side; ++z) set_slice(at, z, block[size_t(z)] | (z > 0 ? block[size_t(z) - 1] : 0));
     set_slice(at + glm::ivec3(0, 0, 1), 0, block[side - 1]);
   });
-  cells.shrink_to_fit();
   return cells;
 }
 
@@ -101,37 +103,45 @@ void BitBlocks::set(const glm::ivec3& block, int z, uint64_t bits) {
   bits_[slot][size_t(z)] |= bits;
 }
 
-void Occupancy::add_level(const BitBlocks& texels, const glm::ivec3& size) {
-  levels_.push_back({to_float4(to_int4(size) - 1), cells_around(texels, size)});
+/// Appends the blocks of the next level.
+void Occupancy::add_level(const BitBlocks& cells) {
+  first_.push_back(int32_t(slots_.size()));
+  for (int i = 0; i < count(cells.block_grid()); ++i) {
+    const Block* block = cells.find(block_at(cells.block_grid(), i));
+    slots_.push_back(block ? uint32_t(blocks_.size()) : 0);
+    if (block) blocks_.push_back(*block);
+  }
 }
 
 template <class Texel>
-Occupancy::Occupancy(const BasicPyramid<Texel>& pyramid) {
+Occupancy::Occupancy(const BasicPyramid<Texel>& pyramid) : Occupancy(pyramid.base.size()) {
   BitBlocks texels(pyramid.base.size());
   add_texels(pyramid.base, texels);
-  add_level(texels, pyramid.base.size());
+  add_level(cells_around(texels, pyramid.base.size()));
   for (const BrickVolume<Directional<Texel>>& level : pyramid.levels) {
     BitBlocks coarse(level.size());
     add_parents(texels, coarse);
     add_texels(level, coarse);  // volumes that somebody else made may hold more than their parents do
-    add_level(coarse, level.size());
+    add_level(cells_around(coarse, level.size()));
     texels = std::move(coarse);
   }
+  shrink_to_fit();
 }
 
-Occupancy::Occupancy(const SurfaceGrid& surfaces) {
+Occupancy::Occupancy(const SurfaceGrid& surfaces) : Occupancy(surfaces.grid.size) {
   glm::ivec3 size = surfaces.grid.size;
   BitBlocks texels(size);
   for (const glm::ivec3& v : surfaces.voxels)
     texels.set(v / side, v.z % side, uint64_t{1} << (v.x % side + side * (v.y % side)));
-  add_level(texels, size);
+  add_level(cells_around(texels, size));
   while (size != glm::ivec3(1)) {
     size = (size + 1) / 2;
     BitBlocks coarse(size);
     add_parents(texels, coarse);
-    add_level(coarse, size);
+    add_level(cells_around(coarse, size));
     texels = std::move(coarse);
   }
+  shrink_to_fit();
 }
 
 Occupancy::Gap Occupancy::gap(int level, const Float4& p, const Float4& way, const Float4& inverse) const {
@@ -143,12 +153,6 @@ Occupancy::Gap Occupancy::gap(int level, const Float4& p, const Float4& way, con
   const Float4 lengths = way == 0.0f ? Float4{} + std::numeric_limits<float>::infinity() : to_face * inverse;
   const float shortest = std::min(std::min(lengths[0], lengths[1]), lengths[2]);
   return {std::max(shortest, 0.0f) / scale(level), level};
-}
-
-size_t Occupancy::bytes() const {
-  size_t total = 0;
-  for (const Level& level : levels_) total += level.cells.bytes();
-  return total;
 }
 
 template Occupancy::Occupancy(const BasicPyramid<glm::vec4>&);

@@ -4,8 +4,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "cone/raw_lookup.h"
-
 namespace voxref {
 
 namespace {
@@ -52,18 +50,12 @@ glm::vec3 RawVoxelGatherer<Texel>::irradiance(const glm::ivec3& voxel, const glm
 
 template <class Texel>
 glm::vec3 RawVoxelGatherer<Texel>::march(const glm::vec3& apex, const glm::vec3& direction) const {
-  const SquaredRead read(direction);
-  const glm::vec3 size(pyramid_.grid.size);
-  Float4 gathered{};
-  for (const ConeStep& step : steps_) {
-    const glm::vec3 p = apex + step.distance * direction;
-    const bool first = &step == steps_.data();
-    if (first && (glm::any(glm::lessThan(p, glm::vec3(0.0f))) || glm::any(glm::greaterThan(p, size)))) break;
-    if (!occupied_(step.coarsest(), to_float4(p))) continue;
-    gathered += (1.0f - gathered[3]) * sample_raw(pyramid_, to_float4(p), step, read);
-    if (gathered[3] > 1.0f) break;
-  }
-  return glm::vec3(to_vec4(gathered));
+  if (steps_.size() == 0) return glm::vec3(0.0f);
+  const ConeAxis axis(apex, direction);
+  const glm::vec3 first(to_vec4(axis.origin + steps_[0].distance * axis.way)), size(pyramid_.grid.size);
+  if (glm::any(glm::lessThan(first, glm::vec3(0.0f))) || glm::any(glm::greaterThan(first, size)))
+    return glm::vec3(0.0f);
+  return march_raw(pyramid_, occupied_, axis, steps_).radiance;
 }
 
 template class RawVoxelGatherer<glm::vec4>;

@@ -26,7 +26,7 @@ class RawVoxelGatherer {
   const BasicPyramid<Texel>& pyramid_;
   Occupancy occupied_;
   ConeSet cones_;
-  std::vector<ConeStep> steps_;  ///< distances in voxels
+  ConeSteps steps_;  ///< distances in voxels
 };
 
 }  // namespace voxref

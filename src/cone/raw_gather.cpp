@@ -39,12 +39,11 @@ bool RawGatherer<Texel>::misses_box(const GatherPoint& point, const glm::vec3& d
 }
 
 template <class Texel>
-RawCone RawGatherer<Texel>::march(const GatherPoint& point, const glm::vec3& direction,
-                                  const std::vector<ConeStep>& steps) const {
+RawCone RawGatherer<Texel>::march(const GatherPoint& point, const glm::vec3& direction, const ConeSteps& steps) const {
   if (misses_box(point, direction)) return {};
-  return march_raw(pyramid_, occupied_,
-                   point.position + options_.cone.start * pyramid_.grid.voxel * point.geometric_normal, direction,
-                   steps);
+  const Grid& grid = pyramid_.grid;
+  const glm::vec3 start = point.position + options_.cone.start * grid.voxel * point.geometric_normal;
+  return march_raw(pyramid_, occupied_, ConeAxis(grid, start, direction), steps);
 }
 
 template <class Texel>
@@ -75,8 +74,8 @@ float RawGatherer<Texel>::visibility(const GatherPoint& point, const Light& ligh
   const float end = light.type == LightType::directional ? side_ : lit.distance;
   const float gain = options_.shadow_tolerance == 1.0f ? std::numeric_limits<float>::infinity()
                                                        : std::exp2(7.0f * options_.shadow_tolerance);
-  return march_raw_shadow(pyramid_, occupied_, point.position + unit_ * lit.to_light, lit.to_light, shadow_steps_, end,
-                          gain);
+  const ConeAxis axis(pyramid_.grid, point.position + unit_ * lit.to_light, lit.to_light);
+  return march_raw_shadow(pyramid_, occupied_, axis, shadow_steps_, end, gain);
 }
 
 template class RawGatherer<glm::vec4>;

@@ -35,14 +35,14 @@ class RawGatherer {
   /// @param end world units
   ConeStepping stepping(float end) const;
   bool misses_box(const GatherPoint& point, const glm::vec3& direction) const;
-  RawCone march(const GatherPoint& point, const glm::vec3& direction, const std::vector<ConeStep>& steps) const;
+  RawCone march(const GatherPoint& point, const glm::vec3& direction, const ConeSteps& steps) const;
 
   const BasicPyramid<Texel>& pyramid_;
   ConeSet diffuse_;
   GatherOptions options_;
-  float side_, unit_, end_;                           // the grid's longest side; w; where cones end; world units
-  std::vector<std::vector<ConeStep>> diffuse_steps_;  // one per cone
-  std::vector<ConeStep> shadow_steps_;
+  float side_, unit_, end_;               // the grid's longest side; w; where cones end; world units
+  std::vector<ConeSteps> diffuse_steps_;  // one per cone
+  ConeSteps shadow_steps_;
   Occupancy occupied_;
 };
 

@@ -1,25 +1,44 @@
 #pragma once
 #include "cone/interpolate.h"
 #include "cone/raw_march.h"
+#include "cone/texel_lanes.h"
 
 namespace voxref {
 
-/// Trilinear look-up in a volume whose border texels go on for ever, 0 where nothing is stored.
-template <class Texel, class Read>
-Float4 trilinear_clamped(const BrickVolume<Texel>& volume, const Float4& p, const Read& read) {
-  const Corners<Texel> corners = corners_clamped(volume, p);
-  return corners.empty ? Float4{} : interpolate(corners, read);
+/// Where eight samples of a cone, side by side, are looked up.
+struct RawSamples {
+  TexelLanes coarser, finer;  ///< in their coarsest level, and in the one below it
+
+  /// @param last texel of the base along each axis @param coarsest ConeStep::coarsest() @param x, y, z voxels
+  RawSamples(const Int4& last, const Int8& coarsest, const Float8& x, const Float8& y, const Float8& z) {
+    locate_clamped(last, coarsest, x, y, z, coarser);
+    locate_clamped(last, coarsest > 0 ? coarsest - 1 : coarsest, x, y, z, finer);
+  }
+};
+
+/// One of them. Borders of volumes go on for ever; where nothing is stored there is 0.
+template <class Kernel, class Texel>
+inline Float4 sample_raw(const BasicPyramid<Texel>& pyramid, const RawSamples& samples, size_t lane,
+                         const ConeStep& step, const SquaredRead& read) {
+  const auto interpolate = [&](const auto& corners, const auto& shares) {
+    return Kernel::interpolate(corners, shares, read);
+  };
+  const auto at = [&](int level, const TexelLanes& lanes) {
+    return level == 0 ? visit_lane(pyramid.base, lanes, lane, interpolate)
+                      : visit_lane(pyramid.levels[size_t(level - 1)], lanes, lane, interpolate);
+  };
+  const Float4 coarse = at(step.coarsest(), samples.coarser);
+  return step.fraction == 0.0f ? coarse : mix(at(step.level, samples.finer), coarse, step.fraction);
 }
 
-/// A cone's sample. @param p in voxels of the base volume
+/// Opacity alone, of a step that reads the base alone.
 template <class Texel>
-Float4 sample_raw(const BasicPyramid<Texel>& pyramid, const Float4& p, const ConeStep& step, const SquaredRead& read) {
-  const auto at = [&](int level) {
-    if (level == 0) return trilinear_clamped(pyramid.base, p, read);
-    return trilinear_clamped(pyramid.levels[size_t(level - 1)], p * (1.0f / float(1u << level)), read);
-  };
-  const Float4 fine = at(step.level);
-  return step.fraction == 0.0f ? fine : mix(fine, at(step.level + 1), step.fraction);
+inline float base_alpha(const BasicPyramid<Texel>& pyramid, const RawSamples& samples, size_t lane) {
+  return visit_lane(pyramid.base, samples.coarser, lane, [](const auto& corners, const auto& shares) {
+    float sum = 0.0f;
+    for (size_t i = 0; i < 8; ++i) sum += shares[i] * decode_alpha(corners[i]);
+    return sum;
+  });
 }
 
 }  // namespace voxref

@@ -1,11 +1,14 @@
 #include "cone/raw_march.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <utility>
 
+#include "cone/interpolate_wide.h"
 #include "cone/raw_lookup.h"
 
 namespace voxref {
@@ -25,94 +28,131 @@ std::vector<ConeStep> cone_steps(float tan_half_angle, const ConeStepping& stepp
   return steps;
 }
 
-namespace {
-
-/// Opacity alone of the base volume.
-template <class Texel>
-float base_alpha(const BrickVolume<Texel>& base, const Float4& p) {
-  const Corners<Texel> corners = corners_clamped(base, p);
-  if (corners.empty) return 0.0f;
-  std::array<float, 8> alphas;
-  for (size_t i = 0; i < 8; ++i) alphas[i] = decode_alpha(*corners.texels[i]);
-  return mix_corners(alphas, corners.f);
+ConeSteps::ConeSteps(std::vector<ConeStep> steps) : steps_(std::move(steps)) {
+  if (steps_.empty()) return;
+  const size_t padded = (steps_.size() + lanes - 1) / lanes * lanes;
+  for (size_t i = 0; i < padded; ++i) {
+    const ConeStep& step = steps_[std::min(i, steps_.size() - 1)];
+    distances_.push_back(step.distance);
+    coarsest_.push_back(step.coarsest());
+  }
 }
 
-/// The samples of a cone at which there may be something: calls visit(step, position in voxels) for them until it
-/// returns false.
+namespace {
+
+/// The samples of a cone at which there may be something: calls visit(step, samples, lane) for them until it returns
+/// false. Where they are is found for many of them before the first is visited: a processor that knows what comes next
+/// overlaps one look-up with another, and does not wait for each to tell whether there is a next one.
+/// @param last texel of the base along each axis
 template <class Visit>
-void for_each_sample(const Occupancy& occupied, const Float4& origin, const Float4& way,
-                     const std::vector<ConeStep>& steps, float end, Visit&& visit) {
-  // Samples of wide cones lie too far apart for two of them to fall into one gap.
-  constexpr size_t many = 32;
-  const bool leaps = steps.size() > many;
-  const Float4 inverse = 1.0f / way;
-  float empty_until = 0.0f;
-  int empty_level = 0;
-  for (const ConeStep& step : steps) {
-    if (step.distance > end) break;
-    const int level = step.coarsest();
-    if (step.distance < empty_until && level <= empty_level) continue;
-    const Float4 p = origin + step.distance * way;
-    if (occupied(level, p)) {
-      if (!visit(step, p)) break;
-    } else if (leaps) {
-      const Occupancy::Gap gap = occupied.gap(level, p, way, inverse);
-      empty_until = step.distance + gap.length;
-      empty_level = gap.level;
+inline void for_each_sample(const Int4& last, const Occupancy& occupied, const ConeAxis& axis, const ConeSteps& steps,
+                            float end, const Visit& visit) {
+  constexpr size_t lanes = ConeSteps::lanes, most_groups = 4;
+  const Float4 &o = axis.origin, &w = axis.way;
+  for (size_t begin = 0; begin < steps.size() && steps[begin].distance <= end; begin += lanes * most_groups) {
+    const size_t count = std::min(lanes * most_groups, steps.size() - begin);
+    uint32_t found[most_groups];
+    for (size_t k = 0; lanes * k < count; ++k) {
+      Float8 s;
+      Int8 level;
+      steps.load(begin + lanes * k, s, level);
+      found[k] = occupied(level, o[0] + s * w[0], o[1] + s * w[1], o[2] + s * w[2]);
+      if (count < lanes * (k + 1)) found[k] &= (1u << (count - lanes * k)) - 1;
+    }
+    for (size_t k = 0; lanes * k < count; ++k) {
+      if (found[k] == 0) continue;
+      Float8 s;
+      Int8 level;
+      steps.load(begin + lanes * k, s, level);
+      const RawSamples samples(last, level, o[0] + s * w[0], o[1] + s * w[1], o[2] + s * w[2]);
+      for (uint32_t bits = found[k]; bits != 0; bits &= bits - 1) {
+        const auto lane = size_t(std::countr_zero(bits));
+        const ConeStep& step = steps[begin + lanes * k + lane];
+        if (step.distance > end || !visit(step, samples, lane)) return;
+      }
     }
   }
+}
+
+template <class Texel>
+Int4 last_texel(const BasicPyramid<Texel>& pyramid) {
+  return to_int4(pyramid.base.size()) - 1;
+}
+
+template <class Kernel, class Texel>
+inline RawCone march(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const ConeAxis& axis,
+                     const ConeSteps& steps) {
+  const SquaredRead read(axis.direction);
+  Float4 gathered{};
+  float opacity = 0.0f, occlusion = 0.0f;
+  constexpr float endless = std::numeric_limits<float>::infinity();
+  for_each_sample(last_texel(pyramid), occupied, axis, steps, endless,
+                  [&](const ConeStep& step, const RawSamples& samples, size_t lane) {
+                    const Float4 sample = sample_raw<Kernel>(pyramid, samples, lane, step, read);
+                    gathered += (1.0f - opacity) * sample;
+                    opacity = gathered[3];
+                    if (occlusion < 1.0f) occlusion += (1.0f - occlusion) * sample[3] * step.occlusion;
+                    return opacity < 1.0f;
+                  });
+  return {{gathered[0], gathered[1], gathered[2]}, opacity, occlusion};
+}
+
+template <class Kernel, class Texel>
+inline float march_shadow(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const ConeAxis& axis,
+                          const ConeSteps& steps, float end, float gain) {
+  constexpr float least_alpha = 1e-30f;  // the published shaders' EPSILON: any stored alpha is above it
+  const SquaredRead read(axis.direction);
+  const bool hard = gain == std::numeric_limits<float>::infinity();
+  float blocked = 0.0f;
+  for_each_sample(last_texel(pyramid), occupied, axis, steps, end,
+                  [&](const ConeStep& step, const RawSamples& samples, size_t lane) {
+                    const float alpha = step.coarsest() == 0
+                                            ? base_alpha(pyramid, samples, lane)
+                                            : sample_raw<Kernel>(pyramid, samples, lane, step, read)[3];
+                    if (hard && alpha > least_alpha)
+                      blocked = 1.0f;
+                    else if (alpha != 0.0f)
+                      blocked += (1.0f - blocked) * alpha * gain;
+                    return blocked < 1.0f;
+                  });
+  return std::max(1.0f - blocked, 0.0f);
+}
+
+template <class Texel>
+VOXREF_WIDE_ALL RawCone march_wide(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const ConeAxis& axis,
+                                   const ConeSteps& steps) {
+  return march<WideKernel>(pyramid, occupied, axis, steps);
+}
+template <class Texel>
+VOXREF_WIDE_ALL float march_shadow_wide(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied,
+                                        const ConeAxis& axis, const ConeSteps& steps, float end, float gain) {
+  return march_shadow<WideKernel>(pyramid, occupied, axis, steps, end, gain);
 }
 
 }  // namespace
 
 template <class Texel>
-RawCone march_raw(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const glm::vec3& start,
-                  const glm::vec3& direction, const std::vector<ConeStep>& steps) {
-  const Float4 origin = to_float4(pyramid.grid.to_voxels(start)), way = to_float4(direction / pyramid.grid.voxel);
-  const SquaredRead read(direction);
-  Float4 gathered{};
-  float occlusion = 0.0f;
-  constexpr float endless = std::numeric_limits<float>::infinity();
-  for_each_sample(occupied, origin, way, steps, endless, [&](const ConeStep& step, const Float4& p) {
-    const Float4 sample = sample_raw(pyramid, p, step, read);
-    gathered += (1.0f - gathered[3]) * sample;
-    if (occlusion < 1.0f) occlusion += (1.0f - occlusion) * sample[3] * step.occlusion;
-    return gathered[3] < 1.0f;
-  });
-  return {{gathered[0], gathered[1], gathered[2]}, gathered[3], occlusion};
+RawCone march_raw(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const ConeAxis& axis,
+                  const ConeSteps& steps) {
+  return wide_machine ? march_wide(pyramid, occupied, axis, steps) : march<PlainKernel>(pyramid, occupied, axis, steps);
 }
 
 template <class Texel>
-float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const glm::vec3& start,
-                       const glm::vec3& direction, const std::vector<ConeStep>& steps, float end, float gain) {
-  constexpr float least_alpha = 1e-30f;  // the published shaders' EPSILON: any stored alpha is above it
-  const Float4 origin = to_float4(pyramid.grid.to_voxels(start)), way = to_float4(direction / pyramid.grid.voxel);
-  const SquaredRead read(direction);
-  const bool hard = gain == std::numeric_limits<float>::infinity();
-  float blocked = 0.0f;
-  for_each_sample(occupied, origin, way, steps, end, [&](const ConeStep& step, const Float4& p) {
-    const float alpha = step.coarsest() == 0 ? base_alpha(pyramid.base, p) : sample_raw(pyramid, p, step, read)[3];
-    if (hard && alpha > least_alpha)
-      blocked = 1.0f;
-    else if (alpha != 0.0f)
-      blocked += (1.0f - blocked) * alpha * gain;
-    return blocked < 1.0f;
-  });
-  return std::max(1.0f - blocked, 0.0f);
+float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const ConeAxis& axis,
+                       const ConeSteps& steps, float end, float gain) {
+  return wide_machine ? march_shadow_wide(pyramid, occupied, axis, steps, end, gain)
+                      : march_shadow<PlainKernel>(pyramid, occupied, axis, steps, end, gain);
 }
 
-template RawCone march_raw(const BasicPyramid<glm::vec4>&, const Occupancy&, const glm::vec3&, const glm::vec3&,
-                           const std::vector<ConeStep>&);
-template float march_raw_shadow(const BasicPyramid<glm::vec4>&, const Occupancy&, const glm::vec3&, const glm::vec3&,
-                                const std::vector<ConeStep>&, float, float);
-template RawCone march_raw(const BasicPyramid<Rgba16f>&, const Occupancy&, const glm::vec3&, const glm::vec3&,
-                           const std::vector<ConeStep>&);
-template float march_raw_shadow(const BasicPyramid<Rgba16f>&, const Occupancy&, const glm::vec3&, const glm::vec3&,
-                                const std::vector<ConeStep>&, float, float);
-template RawCone march_raw(const BasicPyramid<Rgba8>&, const Occupancy&, const glm::vec3&, const glm::vec3&,
-                           const std::vector<ConeStep>&);
-template float march_raw_shadow(const BasicPyramid<Rgba8>&, const Occupancy&, const glm::vec3&, const glm::vec3&,
-                                const std::vector<ConeStep>&, float, float);
+template RawCone march_raw(const BasicPyramid<glm::vec4>&, const Occupancy&, const ConeAxis&, const ConeSteps&);
+template float march_raw_shadow(const BasicPyramid<glm::vec4>&, const Occupancy&, const ConeAxis&, const ConeSteps&,
+                                float, float);
+template RawCone march_raw(const BasicPyramid<Rgba16f>&, const Occupancy&, const ConeAxis&, const ConeSteps&);
+template float march_raw_shadow(const BasicPyramid<Rgba16f>&, const Occupancy&, const ConeAxis&, const ConeSteps&,
+                                float, float);
+template RawCone march_raw(const BasicPyramid<Rgba8>&, const Occupancy&, const ConeAxis&, const ConeSteps&);
+template float march_raw_shadow(const BasicPyramid<Rgba8>&, const Occupancy&, const ConeAxis&, const ConeSteps&, float,
+                                float);
 
 bool meets(const Bounds& box, const glm::vec3& origin, const glm::vec3& direction) {
   const glm::vec3 a = (box.min - origin) / direction, b = (box.max - origin) / direction;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstring>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -31,6 +32,41 @@ struct ConeStepping {
 /// log2(d / unit), s grows by step x d (spec section 5, villegas2016). @param tan_half_angle above 0
 std::vector<ConeStep> cone_steps(float tan_half_angle, const ConeStepping& stepping);
 
+/// Such samples as marches read them, some side by side.
+class ConeSteps {
+ public:
+  static constexpr size_t lanes = 8;
+
+  ConeSteps() = default;
+  ConeSteps(std::vector<ConeStep> steps);
+
+  size_t size() const { return steps_.size(); }
+  const ConeStep& operator[](size_t i) const { return steps_[i]; }
+  /// Of the samples from i on, i a multiple of `lanes`; what lies beyond the last repeats it.
+  void load(size_t i, Float8& distance, Int8& coarsest) const {
+    std::memcpy(&distance, distances_.data() + i, sizeof distance);
+    std::memcpy(&coarsest, coarsest_.data() + i, sizeof coarsest);
+  }
+
+ private:
+  std::vector<ConeStep> steps_;
+  std::vector<float> distances_;
+  std::vector<int32_t> coarsest_;
+};
+
+/// Where a cone runs: at distance s from its start it is at origin + s way.
+struct ConeAxis {
+  Float4 origin, way;   ///< voxels of the base
+  glm::vec3 direction;  ///< unit
+
+  /// Distances are in world units. @param start world
+  ConeAxis(const Grid& grid, const glm::vec3& start, const glm::vec3& unit)
+      : origin(to_float4(grid.to_voxels(start))), way(to_float4(unit / grid.voxel)), direction(unit) {}
+  /// Distances are in voxels, as `start` is.
+  ConeAxis(const glm::vec3& start, const glm::vec3& unit)
+      : origin(to_float4(start)), way(to_float4(unit)), direction(unit) {}
+};
+
 struct RawCone {
   glm::vec3 radiance{0.0f};  ///< premultiplied sum, as stored
   float opacity = 0.0f;
@@ -40,17 +76,17 @@ struct RawCone {
 /// Marches volumes as the published shaders do: opacity is interpolated as it is stored, a sample's opacity does not
 /// depend on the step's length, and what lies outside the volumes is their edge. At each sample C += (1 - a) c and
 /// a += (1 - a) alpha until a >= 1. Faces count with the direction's squared components.
-/// @param occupied of the pyramid @param start world; distances count from it @param direction unit
+/// @param occupied of the pyramid
 template <class Texel>
-RawCone march_raw(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const glm::vec3& start,
-                  const glm::vec3& direction, const std::vector<ConeStep>& steps);
+RawCone march_raw(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const ConeAxis& axis,
+                  const ConeSteps& steps);
 
 /// What a raw shadow cone lets through, in [0,1]: v += (1 - v) gain alpha until v >= 1, then 1 - v.
-/// @param end samples beyond this distance are not taken, world units
+/// @param end samples beyond this distance are not taken
 /// @param gain infinity: any alpha above 1e-30 is black
 template <class Texel>
-float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const glm::vec3& start,
-                       const glm::vec3& direction, const std::vector<ConeStep>& steps, float end, float gain);
+float march_raw_shadow(const BasicPyramid<Texel>& pyramid, const Occupancy& occupied, const ConeAxis& axis,
+                       const ConeSteps& steps, float end, float gain);
 
 /// Whether a ray meets a box: the slab test of the published shaders, by which a ray that only grazes it does not.
 bool meets(const Bounds& box, const glm::vec3& origin, const glm::vec3& direction);

@@ -1,5 +1,6 @@
 #include "cone/occupancy.h"
 
+#include <bit>
 #include <glm/geometric.hpp>
 #include <random>
 
@@ -37,7 +38,8 @@ TEST_CASE("A look-up finds something where, and only where, the occupancy of its
   for (int i = 0; i < 20000; ++i) {
     const glm::vec3 p(anywhere(random), anywhere(random), anywhere(random));
     for (int level = 0; level <= 3; ++level) {
-      const bool found = sample_raw(pyramid, to_float4(p), {0.0f, level, 0.0f, 1.0f}, read)[3] != 0.0f;
+      const RawSamples samples(to_int4(size) - 1, Int8{} + level, Float8{} + p.x, Float8{} + p.y, Float8{} + p.z);
+      const bool found = sample_raw<PlainKernel>(pyramid, samples, 0, {0.0f, level, 0.0f, 1.0f}, read)[3] != 0.0f;
       (found ? full : empty)++;
       // Where the border goes on for ever, a cell at the border is read at its edge alone.
       const bool inside =
@@ -50,6 +52,27 @@ TEST_CASE("A look-up finds something where, and only where, the occupancy of its
   }
   CHECK(empty > 1000);
   CHECK(full > 1000);
+}
+
+TEST_CASE("Eight positions at once are found as each on its own, in eight levels", "[occupancy]") {
+  const Pyramid pyramid = random_pyramid({150, 37, 70}, 2000);
+  const Occupancy occupied(pyramid);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> anywhere(-20.0f, 170.0f);  // beyond the border too
+  std::uniform_int_distribution<int> any_level(0, int(pyramid.levels.size()));
+  int found = 0;
+  for (int round = 0; round < 5000; ++round) {
+    Float8 x, y, z;
+    Int8 level;
+    for (int i = 0; i < 8; ++i) x[i] = anywhere(random), y[i] = anywhere(random), z[i] = anywhere(random);
+    for (int i = 0; i < 8; ++i) level[i] = any_level(random);
+    uint32_t expected = 0;
+    for (int i = 0; i < 8; ++i) expected |= uint32_t(occupied(level[i], Float4{x[i], y[i], z[i], 0.0f})) << i;
+    REQUIRE(occupied(level, x, y, z) == expected);
+    found += std::popcount(expected);
+  }
+  CHECK(found > 5000);
+  CHECK(found < 35000);
 }
 
 TEST_CASE("All along a gap nothing is found, in its level and below", "[occupancy]") {

@@ -116,6 +116,7 @@ TEST_CASE("Opacity in a wide part of the cone counts less towards occlusion", "[
 TEST_CASE("The march through bricks of bytes is that of every texel on its own", "[raw_march]") {
   const Pyramid8 pyramid = random_volume(32, 40);
   const PlainMarch plain(pyramid);
+  const Occupancy occupied(pyramid);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> anywhere(-4.0f, 36.0f), component(-1.0f, 1.0f);  // outside the volume too
   for (const float tangent : {0.03f, 0.2f, 0.57735f, 3.0f}) {
@@ -134,7 +135,7 @@ TEST_CASE("The march through bricks of bytes is that of every texel on its own",
         occlusion += (1.0 - occlusion) * c.a * double(step.occlusion);
         if (sum.a >= 1.0) break;
       }
-      const RawCone cone = march_raw(pyramid, Occupancy(pyramid), start, direction, steps);
+      const RawCone cone = march_raw(pyramid, occupied, ConeAxis(start, direction), steps);
       constexpr double rounding = 1e-4;  // positions of up to 36 in float32, over up to a hundred samples
       CHECK(glm::distance(glm::dvec3(cone.radiance), glm::dvec3(sum)) < rounding);
       CHECK(std::abs(cone.opacity - sum.a) < rounding);
@@ -167,8 +168,9 @@ TEST_CASE("Bytes and floats of the same values march alike", "[raw_march]") {
     }));
   const auto steps = cone_steps(0.57735f, stepping(2.0f, 0.5f, 15.0f, 4));
   const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.5f, 0.8f));
-  const RawCone a = march_raw(bytes, Occupancy(bytes), {8.0f, 12.0f, 2.0f}, direction, steps);
-  const RawCone b = march_raw(floats, Occupancy(floats), {8.0f, 12.0f, 2.0f}, direction, steps);
+  const ConeAxis axis({8.0f, 12.0f, 2.0f}, direction);
+  const RawCone a = march_raw(bytes, Occupancy(bytes), axis, steps);
+  const RawCone b = march_raw(floats, Occupancy(floats), axis, steps);
   CHECK(a.opacity > 0.0f);
   for (int c = 0; c < 3; ++c) CHECK(a.radiance[c] == Approx(b.radiance[c]).epsilon(1e-6));
 }
@@ -179,7 +181,7 @@ TEST_CASE("Raw opacity depends on the step: half-opaque fog lets .5, .25, .0625,
   for (const int samples : {1, 2, 4, 10}) {
     std::vector<ConeStep> steps;
     for (int i = 0; i < samples; ++i) steps.push_back({float(i) / float(samples), 0, 0.0f, 1.0f});
-    const RawCone cone = march_raw(fog, Occupancy(fog), {8.0f, 16.0f, 16.0f}, along_x, steps);
+    const RawCone cone = march_raw(fog, Occupancy(fog), ConeAxis({8.0f, 16.0f, 16.0f}, along_x), steps);
     CHECK(1.0f - cone.opacity == Approx(std::pow(0.5f, float(samples))).epsilon(1e-5));
   }
 }
@@ -187,24 +189,26 @@ TEST_CASE("Raw opacity depends on the step: half-opaque fog lets .5, .25, .0625,
 TEST_CASE("Outside the volume a raw cone goes on seeing its edge", "[raw_march]") {
   const Pyramid edge = slab(31, 32, 0.5f);
   const std::vector<ConeStep> far = {{100.0f, 0, 0.0f, 1.0f}};
-  CHECK(march_raw(edge, Occupancy(edge), {16.0f, 16.0f, 16.0f}, along_x, far).opacity == 0.5f);
-  CHECK(march_raw(edge, Occupancy(edge), {16.0f, 16.0f, 16.0f}, -along_x, far).opacity == 0.0f);
+  const Occupancy occupied(edge);
+  CHECK(march_raw(edge, occupied, ConeAxis({16.0f, 16.0f, 16.0f}, along_x), far).opacity == 0.5f);
+  CHECK(march_raw(edge, occupied, ConeAxis({16.0f, 16.0f, 16.0f}, -along_x), far).opacity == 0.0f);
 }
 
 TEST_CASE("A shadow cone multiplies opacity by its gain, and ends at the light", "[raw_march]") {
   const Pyramid thin = slab(16, 17, 0.25f);
   const std::vector<ConeStep> steps = {{1.0f, 0, 0.0f, 1.0f}, {8.5f, 0, 0.0f, 1.0f}, {12.0f, 0, 0.0f, 1.0f}};
   const glm::vec3 start(8.0f, 16.0f, 16.0f);
+  const ConeAxis forth(start, along_x), back(start, -along_x);
   const Occupancy occupied(thin);
-  CHECK(march_raw_shadow(thin, occupied, start, along_x, steps, 20.0f, 1.0f) == 0.75f);
-  CHECK(march_raw_shadow(thin, occupied, start, along_x, steps, 20.0f, 2.0f) == 0.5f);
-  CHECK(march_raw_shadow(thin, occupied, start, along_x, steps, 20.0f, 8.0f) == 0.0f);  // never below 0
-  CHECK(march_raw_shadow(thin, occupied, start, along_x, steps, 8.0f, 1.0f) == 1.0f);   // the light is before the slab
-  CHECK(march_raw_shadow(thin, occupied, start, along_x, steps, 20.0f, infinity) == 0.0f);
-  CHECK(march_raw_shadow(thin, occupied, start, -along_x, steps, 20.0f, infinity) == 1.0f);
+  CHECK(march_raw_shadow(thin, occupied, forth, steps, 20.0f, 1.0f) == 0.75f);
+  CHECK(march_raw_shadow(thin, occupied, forth, steps, 20.0f, 2.0f) == 0.5f);
+  CHECK(march_raw_shadow(thin, occupied, forth, steps, 20.0f, 8.0f) == 0.0f);  // never below 0
+  CHECK(march_raw_shadow(thin, occupied, forth, steps, 8.0f, 1.0f) == 1.0f);   // the light is before the slab
+  CHECK(march_raw_shadow(thin, occupied, forth, steps, 20.0f, infinity) == 0.0f);
+  CHECK(march_raw_shadow(thin, occupied, back, steps, 20.0f, infinity) == 1.0f);
 }
 
-TEST_CASE("A shadow cone that leaps over empty space sees what one sees that does not", "[raw_march]") {
+TEST_CASE("A shadow cone that skips empty space sees what one sees that does not", "[raw_march]") {
   const Pyramid8 pyramid = random_volume(32, 60);
   const PlainMarch plain(pyramid);
   const Occupancy occupied(pyramid);
@@ -215,6 +219,7 @@ TEST_CASE("A shadow cone that leaps over empty space sees what one sees that doe
   for (int i = 0; i < 300; ++i) {
     const glm::vec3 start(anywhere(random), anywhere(random), anywhere(random));
     const glm::vec3 direction = glm::normalize(glm::vec3(component(random), component(random), component(random)));
+    const ConeAxis axis(start, direction);
     double blocked = 0.0;
     for (const ConeStep& step : steps)
       blocked += (1.0 - blocked) * 0.25 *
@@ -224,10 +229,9 @@ TEST_CASE("A shadow cone that leaps over empty space sees what one sees that doe
                      .a;
     shadowed += blocked > 0.0;
     // Rounding of positions up to 36 in float32, over a hundred samples.
-    CHECK(march_raw_shadow(pyramid, occupied, start, direction, steps, 30.0f, 0.25f) ==
-          Approx(1.0 - blocked).margin(1e-4));
+    CHECK(march_raw_shadow(pyramid, occupied, axis, steps, 30.0f, 0.25f) == Approx(1.0 - blocked).margin(1e-4));
     // Whether there is any opacity at all is told by a look-up, not by its rounding.
-    const float hard = march_raw_shadow(pyramid, occupied, start, direction, steps, 30.0f, infinity);
+    const float hard = march_raw_shadow(pyramid, occupied, axis, steps, 30.0f, infinity);
     if (blocked > 1e-4) CHECK(hard == 0.0f);
     if (blocked == 0.0) CHECK(hard == 1.0f);
   }

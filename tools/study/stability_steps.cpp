@@ -20,7 +20,7 @@ double raw_transmittance(const Pyramid& pyramid, const Occupancy& occupied, cons
   std::vector<ConeStep> steps;
   constexpr float end = 24.0f;  // beyond the layer
   for (int i = 0; float(i) * step <= end; ++i) steps.push_back({float(i) * step, 0, 0.0f, 1.0f});
-  return 1.0 - double(march_raw(pyramid, occupied, start, {1.0f, 0.0f, 0.0f}, steps).opacity);
+  return 1.0 - double(march_raw(pyramid, occupied, ConeAxis(start, {1.0f, 0.0f, 0.0f}), steps).opacity);
 }
 
 }  // namespace
@@ -101,14 +101,13 @@ Approach approach(float step) {
   const Pyramid pyramid = wall_pyramid(side, 1, 1.0f);
   const Occupancy occupied(pyramid);
   const Medium medium = make_medium(wall_pyramid(side, 1, 1.0f));
-  const std::vector<ConeStep> steps =
-      cone_steps(tangent, {unit, step, float(side), static_cast<int>(pyramid.levels.size()), 0.0f});
+  const ConeSteps steps = cone_steps(tangent, {unit, step, float(side), static_cast<int>(pyramid.levels.size()), 0.0f});
   Approach result;
   for (float distance = near; distance <= far; distance += apart) {
     const glm::vec3 origin(0.5f * side + 0.5f - distance, 0.5f * side, 0.5f * side), direction(1.0f, 0.0f, 0.0f);
     result.distances.push_back(double(distance));
     result.extinction.push_back(double(march(medium, origin, direction, tangent, {}, {.step = step}).radiance.r));
-    result.raw.push_back(double(march_raw(pyramid, occupied, origin, direction, steps).radiance.r));
+    result.raw.push_back(double(march_raw(pyramid, occupied, ConeAxis(origin, direction), steps).radiance.r));
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cone/bounce.h"
+#include "cone/interpolate_wide.h"
 #include "cone/lookup.h"
 #include "cone/render.h"
 #include "parallel.h"
@@ -104,6 +105,17 @@ std::vector<StageBench> bench(const Scene& scene, const Caster& caster, const Vi
   return {voxelized, shaded, filtered, bounce_bench, image};
 }
 
+template <class Kernel>
+inline Float4 sum_of_lookups(const Medium& medium, const std::vector<glm::vec4>& samples, const OpticalRead& read) {
+  Float4 sum{};
+  for (const glm::vec4& sample : samples) sum += quadrilinear<Kernel>(medium, load(sample), sample.w, read);
+  return sum;
+}
+VOXREF_WIDE_ALL Float4 sum_of_wide_lookups(const Medium& medium, const std::vector<glm::vec4>& samples,
+                                           const OpticalRead& read) {
+  return sum_of_lookups<WideKernel>(medium, samples, read);
+}
+
 /// Look-ups at positions and levels that are made before the clock runs.
 double lookup_nanoseconds(const Medium& medium, const std::vector<glm::vec4>& samples) {
   const OpticalRead read(glm::normalize(glm::vec3(0.5f, -0.3f, 0.8f)));
@@ -111,7 +123,8 @@ double lookup_nanoseconds(const Medium& medium, const std::vector<glm::vec4>& sa
   Float4 sum{};
   for (int round = 0; round < 5; ++round) {
     const double start = processor_seconds();
-    for (const glm::vec4& sample : samples) sum += quadrilinear(medium, load(sample), sample.w, read);
+    sum +=
+        wide_machine ? sum_of_wide_lookups(medium, samples, read) : sum_of_lookups<PlainKernel>(medium, samples, read);
     best = std::min(best, processor_seconds() - start);
   }
   // What nobody uses the compiler would leave out.
