@@ -103,7 +103,7 @@ LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, 
   }
   surfaces = {};  // the image needs none of them
   shading = {};
-  result.volume = timed(seconds.cone_trace, [&] {
+  result.volume = timed(seconds.prepare, [&] {
     return lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
   });
   count_bytes_beside(result.bytes, result.volume);
@@ -141,15 +141,13 @@ ConeTraceResult gather_image(const Scene& scene, const Caster& caster, const Vie
   result.clamped_shade = lit.clamped_shade;
   result.clamped_bounce = lit.clamped_bounce;
   result.seconds = lit.seconds;
-  double image = 0.0;
-  result.image = timed(image, [&] {
+  result.image = timed(result.seconds.cone_trace, [&] {
     const LitScene from{scene,          caster,
                         lit.volume,     settings.grid.bounds.value_or(scene.bounds()),
                         settings.light, lit.visibility ? &*lit.visibility : nullptr};
     return render_cones(from, view, settings.render, progress);
   });
-  result.seconds.cone_trace += image;
-  result.seconds.total += image;
+  result.seconds.total += result.seconds.cone_trace;
   result.mean = mean_color(result.image.image);
   return result;
 }

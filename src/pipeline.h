@@ -14,7 +14,10 @@ class VolumeFolderWriter;
 
 /// Seconds of each stage, in the order of the pipeline.
 struct StageSeconds {
-  double voxelize = 0, shade = 0, mipmap = 0, bounce = 0, cone_trace = 0, total = 0;
+  double voxelize = 0, shade = 0, mipmap = 0, bounce = 0;
+  double prepare = 0;     ///< making the volume ready for marching; grows with the voxels, not with the image
+  double cone_trace = 0;  ///< the image
+  double total = 0;
 };
 
 /// Voxels whose direct light came out as a NaN or an infinity, before any storage: what it stores of them is no light.
@@ -24,6 +27,9 @@ struct NonfiniteVoxels {
 
   void add(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance);
 };
+
+/// Of the cone tracer's image: 23 float32 channels.
+constexpr size_t cone_image_bytes_per_pixel = 4 * 23;
 
 struct ConeTraceResult {
   ConeImage image;
@@ -48,7 +54,7 @@ struct LitVoxels {
   double gain = 0.0;
   NonfiniteVoxels nonfinite;
   Clamping clamped_shade, clamped_bounce;  ///< as ConeTraceResult's
-  StageSeconds seconds;                    ///< cone_trace: of making the volume ready for marching; total: of all of it
+  StageSeconds seconds;                    ///< total: of all of it
   VolumeBytes bytes;                       ///< as ConeTraceResult's
 };
 

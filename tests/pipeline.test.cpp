@@ -48,8 +48,8 @@ TEST_CASE("The pipeline says what it did, how long it took and what it held", "[
   CHECK(result.gain > 0.3);
   CHECK(result.gain < 0.8);
   const StageSeconds& s = result.seconds;
-  for (const double seconds : {s.voxelize, s.shade, s.mipmap, s.bounce, s.cone_trace}) CHECK(seconds > 0.0);
-  CHECK(s.voxelize + s.shade + s.mipmap + s.bounce + s.cone_trace <= s.total);
+  for (const double seconds : {s.voxelize, s.shade, s.mipmap, s.bounce, s.prepare, s.cone_trace}) CHECK(seconds > 0.0);
+  CHECK(s.voxelize + s.shade + s.mipmap + s.bounce + s.prepare + s.cone_trace <= s.total);
   size_t sum = 0;
   for (const auto& [volume, bytes] : result.bytes)
     if (volume != "total") sum += bytes;

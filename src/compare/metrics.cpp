@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compare/displayed.h"
+#include "compare/measured.h"
 #include "error.h"
 
 namespace voxref {
@@ -18,37 +19,8 @@ using Layer = std::array<std::span<const float>, 3>;
 
 glm::vec3 pixel(const Layer& layer, size_t i) { return {layer[0][i], layer[1][i], layer[2][i]}; }
 
-/// What the first three metrics compare: luminance of both sides and of the standard error, per pixel.
-struct Compared {
-  std::vector<double> cone, path;
-  std::span<const float> standard_error;
-};
-
-Compared compared(const Image& cone, const Image& path, bool indirect_only) {
-  Compared result;
-  const auto lum = [](const glm::vec3& rgb) { return double{luminance(rgb)}; };
-  const size_t count = cone.pixel_count();
-  result.cone.resize(count);
-  result.path.resize(count);
-  if (indirect_only) {
-    const Layer diffuse = cone.layer("diffuse"), specular = cone.layer("specular"), indirect = path.layer("indirect");
-    for (size_t i = 0; i < count; ++i) {
-      result.cone[i] = lum(pixel(diffuse, i)) + lum(pixel(specular, i));
-      result.path[i] = lum(pixel(indirect, i));
-    }
-    result.standard_error = path.channel("stderr.indirect.Y");
-  } else {
-    const Layer a = cone.layer(""), b = path.layer("");
-    for (size_t i = 0; i < count; ++i) {
-      result.cone[i] = lum(pixel(a, i));
-      result.path[i] = lum(pixel(b, i));
-    }
-    result.standard_error = path.channel("stderr.Y");
-  }
-  return result;
-}
-
-void count_nonfinite(Metrics& metrics, const Image& cone, const Image& path, const Compared& values) {
+void count_nonfinite(Metrics& metrics, const Image& cone, const Image& path, const Measured& of_cone,
+                     const Measured& of_path) {
   const Layer a = cone.layer(""), b = path.layer("");
   const auto finite = [](const glm::vec3& v) { return std::isfinite(v.r) && std::isfinite(v.g) && std::isfinite(v.b); };
   const auto note = [&](const char* side, size_t i) {
@@ -57,25 +29,24 @@ void count_nonfinite(Metrics& metrics, const Image& cone, const Image& path, con
       metrics.first_nonfinite =
           std::string(side) + " pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) + ")";
   };
-  for (size_t i = 0; i < values.cone.size(); ++i) {
-    if (!std::isfinite(values.cone[i]) || !finite(pixel(a, i))) {
+  for (size_t i = 0; i < of_cone.value.size(); ++i) {
+    if (!std::isfinite(of_cone.value[i]) || !finite(pixel(a, i))) {
       ++metrics.nonfinite_cone;
       note("cone", i);
     }
-    if (!std::isfinite(values.path[i]) || !std::isfinite(values.standard_error[i]) || !finite(pixel(b, i))) {
+    if (!std::isfinite(of_path.value[i]) || !std::isfinite(of_path.standard_error[i]) || !finite(pixel(b, i))) {
       ++metrics.nonfinite_path;
       note("path", i);
     }
   }
 }
 
-void measure_luminance(Metrics& metrics, const Compared& values) {
-  const auto count = static_cast<double>(values.cone.size());
-  double cone = 0.0, path = 0.0, difference = 0.0, noise = 0.0;
-  for (size_t i = 0; i < values.cone.size(); ++i) {
-    const double d = values.cone[i] - values.path[i], s = values.standard_error[i];
-    cone += values.cone[i] / count;
-    path += values.path[i] / count;
+void measure_luminance(Metrics& metrics, const Measured& of_cone, const Measured& of_path) {
+  const auto count = static_cast<double>(of_cone.value.size());
+  const double cone = of_cone.mean(), path = of_path.mean();
+  double difference = 0.0, noise = 0.0;
+  for (size_t i = 0; i < of_cone.value.size(); ++i) {
+    const double d = of_cone.value[i] - of_path.value[i], s = of_path.standard_error[i];
     difference += d * d / count;
     noise += s * s / count;
   }
@@ -106,14 +77,14 @@ Metrics compare(const Image& cone, const Image& path, bool indirect_only, float 
                                   " and " + std::to_string(path.width()) + "x" + std::to_string(path.height()));
   Metrics metrics;
   metrics.indirect_only = indirect_only;
-  const Compared values = compared(cone, path, indirect_only);
-  count_nonfinite(metrics, cone, path, values);
+  const Measured of_cone = measured_cone(cone, indirect_only), of_path = measured_path(path, indirect_only);
+  count_nonfinite(metrics, cone, path, of_cone, of_path);
   if (metrics.nonfinite_cone + metrics.nonfinite_path > 0) {
     metrics.mean_ratio = metrics.rel_error = metrics.noise_share = metrics.rmse = metrics.relmse = metrics.psnr =
         metrics.ssim = metrics.flip = std::numeric_limits<double>::quiet_NaN();
     return metrics;
   }
-  measure_luminance(metrics, values);
+  measure_luminance(metrics, of_cone, of_path);
   measure_radiance(metrics, cone.layer(""), path.layer(""));
   const DisplayedDifference displayed = displayed_difference(cone, path, exposure);
   metrics.psnr = displayed.psnr;

@@ -138,7 +138,7 @@ TEST_CASE("with --json a command prints one object with the keys that scripts re
 
   const json cone = place.run_json("cone point.glb -o cone.exr" + small_cone);
   CHECK(has_keys(cone, cone_keys));
-  CHECK(has_keys(cone["seconds"], {"voxelize", "shade", "mipmap", "bounce", "cone_trace", "total"}));
+  CHECK(has_keys(cone["seconds"], {"voxelize", "shade", "mipmap", "bounce", "prepare", "cone_trace", "total"}));
   CHECK(cone["bytes"].contains("total"));
   CHECK(cone["grid"].size() == 3);
 

@@ -12,6 +12,32 @@ TEST_CASE("voxref study lists its studies, and refuses others and a missing fold
   check_refused(place, "study pareto", "-o: needed");
   check_refused(place, "study pareto missing.glb -o out", "missing.glb");
   check_refused(place, "study ladder --gpu image.exr -o out", "--gpu: needs the one scene");
+  check_refused(place, "study pareto point.glb --gpu image.exr -o out", "--gpu: is for ladder alone");
+  check_refused(place, "study all point.glb -o out", "SCENE: is not for thesis");
+  check_refused(place, "study stability point.glb -o out", "SCENE: is not for stability");
+  std::filesystem::create_directory(place.path("b"));
+  std::filesystem::copy(place.path("point.glb"), place.path("b/point.glb"));
+  check_refused(place, "study pareto point.glb b/point.glb -o out", "b/point.glb: another SCENE has this name");
+}
+
+TEST_CASE("voxref study writes tables, a page and how each was made", "[study][cli]") {
+  const Workplace place;
+  // A plane alone: the quickest scene, which has direct light only.
+  voxref::write_glb(place.path("plane.glb"), voxref::point_light_over_plane(), "for the tests");
+  const json result = place.run_json("study ladder plane.glb -o out --quick");
+  const json& study = result["studies"][0];
+  CHECK(study["name"] == "ladder");
+  CHECK(study["command"] == "voxref study ladder plane.glb -o out --quick");
+  REQUIRE(study["sections"].size() == 1);
+  for (const json& table : study["sections"][0]["tables"]) {
+    const std::string name = table["name"];
+    CHECK(std::filesystem::exists(place.path("out/" + name + ".csv")));
+    const json file = json::parse(voxref::read_file(place.path("out/" + name + ".json")));
+    CHECK(file["command"] == study["command"]);
+    CHECK(file["rows"] == table["rows"]);
+  }
+  CHECK(json::parse(voxref::read_file(place.path("out/result.json"))) == result);
+  CHECK(contains(voxref::read_file(place.path("out/report.html")), "voxref study ladder plane.glb -o out --quick"));
 }
 
 TEST_CASE("voxref plan writes settings that cone takes, and says what it measured", "[plan][cli]") {

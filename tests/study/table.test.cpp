@@ -11,7 +11,8 @@ TEST_CASE("A table writes units, missing values and awkward words into CSV and J
   Table table{"t", "a caption", {{"scene", ""}, {"time", "s"}, {"error", ""}}, {}};
   table.add({"box, \"small\"", 0.1, 2.0});
   table.add({std::string("plain"), std::numeric_limits<double>::quiet_NaN(), Cell{}});
-  CHECK(csv(table) == "scene,time [s],error\n\"box, \"\"small\"\"\",0.1,2\nplain,,\n");
+  table.add({Cell{}, 3.0, Cell{}});
+  CHECK(csv(table) == "scene,time [s],error\n\"box, \"\"small\"\"\",0.1,2\nplain,,\n,3,\n");
   const nlohmann::json json = to_json(table);
   CHECK(json["columns"][1] == nlohmann::json{{"name", "time"}, {"unit", "s"}});
   CHECK(json["rows"][0][1] == 0.1);

@@ -1,23 +1,17 @@
 #include "study/chart.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <sstream>
 
 #include "error.h"
-#include "file.h"
 
 namespace voxref {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Okabe and Ito 2008, "Color Universal Design", without its yellow, which is too light on white.
 constexpr std::array<const char*, 7> colors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
@@ -56,7 +50,7 @@ CategoryStyle category_style(const std::vector<std::string>& categories) {
   const auto length = static_cast<double>(longest);
   if (categories.size() * longest <= most_letters) return {};
   if (categories.size() <= many) return {"rotate by 30 right ", static_cast<int>(0.2 * length)};
-  return {"rotate by 90 right ", static_cast<int>(0.48 * length)};
+  return {"rotate by 90 right ", static_cast<int>(0.42 * length)};
 }
 
 /// Numbers at 1, 2 and 5 too where a logarithmic axis spans few decades.
@@ -83,37 +77,78 @@ std::string axis_lines(const Axis& axis, char name) {
   return text + ")\n";
 }
 
-/// A data block: x, y, error, label, base; an error bar on a logarithmic axis stays above 0.
+/// The ends of a point's error bars; of none: the point itself. On a logarithmic axis a bar that reaches 0 ends at a
+/// hundredth of the value.
+struct Bars {
+  Interval x, y;
+};
+Bars bars_of(const ChartPoint& p, const Chart& chart) {
+  const auto cut = [](Interval bar, double value, const Axis& axis) {
+    if (axis.logarithmic) bar.low = std::max(bar.low, 0.01 * value);
+    return bar;
+  };
+  return {cut(p.x_bar.value_or(Interval{p.x, p.x}), p.x, chart.x),
+          cut(p.y_bar.value_or(Interval{p.y - p.error, p.y + p.error}), p.y, chart.y)};
+}
+
+/// A data block: x, y, ends of y's error bar, label, base, ends of x's error bar.
 std::string data_block(const Chart& chart, size_t index) {
   std::string text = fmt::format("$data{} << EOD\n", index);
   for (const ChartPoint& p : chart.series[index].points)
     if (drawable(p, chart)) {
-      const double low = chart.y.logarithmic ? std::max(p.y - p.error, 0.01 * p.y) : p.y - p.error;
-      text += fmt::format("{} {} {} {} {} {}\n", p.x, p.y, low, p.y + p.error, quoted(p.label), p.base);
+      const Bars bars = bars_of(p, chart);
+      text += fmt::format("{} {} {} {} {} {} {} {}\n", p.x, p.y, bars.y.low, bars.y.high, quoted(p.label), p.base,
+                          bars.x.low, bars.x.high);
     }
   return text + "EOD\n";
 }
 
-/// Labels of lines stand below their points, others above: where a line runs through points both can be read.
-std::string label_offset(ChartStyle style) { return style == ChartStyle::line ? "0.4,-0.8" : "0.6,0.7"; }
+/// Which of the colours a series has: the next one, or that of the series that it belongs to.
+size_t color_index(const Chart& chart, size_t index) {
+  const std::string& wanted = chart.series[index].color_of;
+  size_t own = 0;
+  for (size_t i = 0; i < chart.series.size(); ++i) {
+    if (wanted.empty() ? i == index : chart.series[i].title == wanted) return own % colors.size();
+    if (chart.series[i].color_of.empty()) ++own;
+  }
+  throw Error("chart", chart.name, "has no series '" + wanted + "'");
+}
+
+bool is_labelled(const Series& series) {
+  return std::any_of(series.points.begin(), series.points.end(), [](const ChartPoint& p) { return !p.label.empty(); });
+}
+
+/// Where labels stand: over bars; of lines below to the right; of the first series of points below to the left, where
+/// there is another, and else above: where two lines cross both can be read.
+std::string label_place(const Chart& chart, size_t index) {
+  const Series& series = chart.series[index];
+  if (series.style == ChartStyle::bars) return "offset 0,0.7 center";
+  if (series.style == ChartStyle::line) return "offset 0.4,-0.8 left";
+  const bool another =
+      std::any_of(chart.series.begin() + static_cast<std::ptrdiff_t>(index) + 1, chart.series.end(), is_labelled);
+  return another ? "offset -0.6,-0.7 right" : "offset 0.6,0.7 left";
+}
 
 std::vector<std::string> plots(const Chart& chart, size_t index) {
   const Series& series = chart.series[index];
   const auto has = [&](const auto& test) { return std::any_of(series.points.begin(), series.points.end(), test); };
   if (!has([&](const ChartPoint& p) { return drawable(p, chart); })) return {};
-  const bool errors = has([](const ChartPoint& p) { return p.error > 0.0; });
+  const bool errors = has([](const ChartPoint& p) { return p.error > 0.0 || p.y_bar; });
+  const bool x_errors = has([](const ChartPoint& p) { return p.x_bar.has_value(); });
   const bool bars = series.style == ChartStyle::bars;
   const std::string data = fmt::format("$data{}", index),
-                    color = fmt::format("lc rgb '{}'", colors[index % colors.size()]);
+                    color = fmt::format("lc rgb '{}'", colors[color_index(chart, index)]);
   const std::string title = series.title.empty() ? "notitle" : "title " + quoted(series.title) + " noenhanced";
   const std::string symbol = fmt::format("pt {} ps 1.1", symbols[index % symbols.size()]);
   std::vector<std::string> result;
   const auto add = [&](const std::string& columns, const std::string& style) {
     result.push_back(fmt::format("{} using {} with {} {} {}", data, columns, style, color, title));
   };
+  const std::string columns = x_errors ? "1:2:7:8:3:4" : errors ? "1:2:3:4" : "1:2";
+  const std::string axes = x_errors ? "xyerror" : errors ? "yerror" : "";
   switch (series.style) {
     case ChartStyle::points:
-      add(errors ? "1:2:3:4" : "1:2", (errors ? "yerrorbars " : "points ") + symbol);
+      add(columns, (axes.empty() ? "points " : axes + "bars ") + symbol);
       break;
     case ChartStyle::line:
       add("1:2", "lines lw 2");
@@ -122,7 +157,7 @@ std::vector<std::string> plots(const Chart& chart, size_t index) {
       add("1:2", "lines lw 1.5 dt 2");
       break;
     case ChartStyle::line_points:
-      add(errors ? "1:2:3:4" : "1:2", (errors ? "yerrorlines lw 1.5 " : "linespoints lw 1.5 ") + symbol);
+      add(columns, (axes.empty() ? "linespoints" : axes + "lines") + " lw 1.5 " + symbol);
       break;
     case ChartStyle::bars:
       add("1:(0.5*($2+$6)):(0.3):(0.5*abs($2-$6))", "boxxyerror fs solid 0.75");
@@ -131,63 +166,78 @@ std::vector<std::string> plots(const Chart& chart, size_t index) {
   if (bars && errors)
     result.push_back(fmt::format(
         "{} using 1:3:(0):($4-$3) with vectors heads size screen 0.004,90 lw 1.5 lc rgb 'black' notitle", data));
-  if (has([](const ChartPoint& p) { return !p.label.empty(); }))
-    result.push_back(fmt::format("{} using 1:{}:5 with labels noenhanced offset {} left font ',9' notitle", data,
-                                 bars ? "($2>$6?$2:$6)" : "2", label_offset(series.style)));
+  if (is_labelled(series))
+    result.push_back(fmt::format("{} using 1:{}:5 with labels noenhanced {} font ',9' notitle", data,
+                                 bars ? "($2>$6?$2:$6)" : "2", label_place(chart, index)));
   return result;
 }
 
-/// The ends of a logarithmic axis: gnuplot's own would be whole decades. @param value of a point on that axis
-template <class Value>
-Axis fitted(Axis axis, const Chart& chart, const Value& value) {
+/// The ends of a logarithmic axis: gnuplot's own would be whole decades. Error bars fit on it down to a tenth of the
+/// least value; those that come near 0 are cut there. @param value of a point on that axis @param bar of its error
+template <class Value, class Bar>
+Axis fitted(Axis axis, const Chart& chart, const Value& value, const Bar& bar) {
   if (!axis.logarithmic) return axis;
-  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  double low = std::numeric_limits<double>::infinity(), high = 0.0, least = low;
   for (const Series& series : chart.series)
     for (const ChartPoint& point : series.points)
       if (drawable(point, chart)) {
-        low = std::min(low, value(point));
-        high = std::max(high, value(point));
+        const Interval ends = bar(bars_of(point, chart));
+        least = std::min(least, value(point));
+        low = std::min(low, ends.low);
+        high = std::max(high, ends.high);
       }
-  constexpr double margin = 1.4;
-  if (!axis.min) axis.min = low / margin;
+  constexpr double margin = 1.4, longest_bar = 0.1;
+  if (!axis.min) axis.min = std::max(low, longest_bar * least) / margin;
   if (!axis.max) axis.max = high * margin;
   return axis;
 }
 
-/// @param file goes to gnuplot as an argument, not through a shell's eyes
-void run_gnuplot(const fs::path& gnuplot, const std::string& script, const std::string& name) {
-  const fs::path folder = fs::temp_directory_path();
-  std::string file = (folder / "voxref-XXXXXX").string();
-  const int descriptor = mkstemp(file.data());
-  if (descriptor < 0) throw Error(folder.string(), "takes no files");
-  close(descriptor);
-  const std::string messages = file + ".messages";
-  write_text(file, script);
-  const std::string line = "'" + gnuplot.string() + "' '" + file + "' 2>'" + messages + "'";
-  const int status = std::system(line.c_str());
-  std::string said = read_file(messages);
-  fs::remove(file);
-  fs::remove(messages);
-  std::replace(said.begin(), said.end(), '\n', ' ');
-  if (status != 0) throw Error("gnuplot", name, said);
+/// The lines beside the plot, and the one above it.
+std::string notes(const Chart& chart) {
+  std::string text;
+  constexpr double top = 0.9, line = 0.036, left = 0.7;  // of the picture's height and width
+  if (!chart.notes.empty()) text += fmt::format("set rmargin at screen {}\n", left - 0.02);
+  for (size_t i = 0; i < chart.notes.size(); ++i)
+    text += fmt::format("set label {} at screen {}, screen {:.3f} left font ',10' noenhanced\n", quoted(chart.notes[i]),
+                        left, top - line * static_cast<double>(i));
+  if (!chart.footer.empty())
+    text += fmt::format("set label {} at screen 0.995, screen 0.985 right font ',7' tc rgb '#777777' noenhanced\n",
+                        quoted(chart.footer));
+  return text;
 }
 
 }  // namespace
 
+bool is_empty(const Chart& chart) {
+  return std::all_of(chart.series.begin(), chart.series.end(), [&](const Series& series) {
+    return std::none_of(series.points.begin(), series.points.end(),
+                        [&](const ChartPoint& point) { return drawable(point, chart); });
+  });
+}
+
 std::string gnuplot_script(const Chart& chart, const std::string& terminal, const std::string& output) {
-  std::string text = terminal == "svg"
-                         ? "set terminal svg size 900,560 font 'Helvetica,13' background rgb 'white'\n"
-                         : "set terminal pngcairo size 1350,840 font 'Helvetica,13' fontscale 1.4 lw 1.4\n";
+  if (is_empty(chart)) throw Error("chart", chart.name, "has nothing to draw");
+  constexpr size_t many = 14;  // categories that a narrow picture has room for
+  const CategoryStyle categories = category_style(chart.x.categories);
+  const int width = chart.notes.empty() && chart.x.categories.size() <= many ? 900 : 1200;
+  const int height = 560 + 16 * categories.lines;
+  std::string text =
+      terminal == "svg"
+          ? fmt::format("set terminal svg size {},{} font 'Helvetica,13' background rgb 'white'\n", width, height)
+          : fmt::format("set terminal pngcairo size {},{} font 'Helvetica,13' fontscale 1.4 lw 1.4\n", 3 * width / 2,
+                        3 * height / 2);
   text += fmt::format("set output {}\nset title {} noenhanced\n", quoted(output), quoted(chart.title));
   text += "set grid xtics ytics lt 1 lc rgb '#cccccc'\nset border 3\nset tics nomirror\n";
   const auto listed = static_cast<int>(std::count_if(chart.series.begin(), chart.series.end(),
                                                      [](const Series& series) { return !series.title.empty(); }));
   const int rows = (listed + 1) / 2;  // of the legend, which has two columns
-  text += listed > 0 ? fmt::format("set key outside below maxrows {}\nset bmargin {}\n", rows,
-                                   5 + rows + category_style(chart.x.categories).lines)
-                     : "set key off\n";
-  text += axis_lines(fitted(chart.x, chart, [](const ChartPoint& p) { return p.x; }), 'x');
-  text += axis_lines(fitted(chart.y, chart, [](const ChartPoint& p) { return p.y; }), 'y');
+  text += listed > 0
+              ? fmt::format("set key outside below maxrows {}\nset bmargin {}\n", rows, 5 + rows + categories.lines)
+              : "set key off\n";
+  text += notes(chart);
+  const auto x = [](const auto& point_or_bars) { return point_or_bars.x; };
+  const auto y = [](const auto& point_or_bars) { return point_or_bars.y; };
+  text += axis_lines(fitted(chart.x, chart, x, x), 'x') + axis_lines(fitted(chart.y, chart, y, y), 'y');
   if (!chart.x.categories.empty())
     text += fmt::format("set xrange [-0.6:{}]\n", static_cast<double>(chart.x.categories.size()) - 0.4);
   std::string plot;
@@ -195,25 +245,7 @@ std::string gnuplot_script(const Chart& chart, const std::string& terminal, cons
     text += data_block(chart, i);
     for (const std::string& element : plots(chart, i)) plot += (plot.empty() ? "plot " : ", \\\n     ") + element;
   }
-  if (plot.empty()) throw Error("chart", chart.name, "has nothing to draw");
   return text + plot + "\n";
-}
-
-std::optional<fs::path> find_gnuplot() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (const fs::path file = fs::path(folder) / "gnuplot"; ::access(file.c_str(), X_OK) == 0) return file;
-  return std::nullopt;
-}
-
-void draw(const Chart& chart, const fs::path& gnuplot, const fs::path& folder) {
-  const fs::path file = folder / chart.name;
-  write_text(file.string() + ".gnuplot", gnuplot_script(chart, "svg", chart.name + ".svg"));
-  for (const std::string terminal : {"svg", "png"})
-    write_atomically(file.string() + "." + terminal, [&](const fs::path& temporary) {
-      run_gnuplot(gnuplot, gnuplot_script(chart, terminal, temporary.string()), chart.name);
-    });
 }
 
 }  // namespace voxref

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numeric>
+#include <limits>
 #include <stdexcept>
+#include <tuple>
 
+#include "compare/statistics.h"
 #include "reference/sampler.h"
 #include "reference/warp.h"
 
@@ -67,41 +69,81 @@ double CostModel::look_ups(double tangent, double step, double distance) {
 }
 
 void CostModel::learn(const Settings& settings, const ConeTraceResult& result, size_t pixels, bool times) {
-  voxels_ = double(result.voxels_occupied);
-  voxel_side_ = double(result.grid.voxel);
-  resolution_ = settings.grid.resolution;
-  if (!settings.bounce.count) auto_bounces_ = result.bounces;
+  Count& count = counts_[settings.grid.resolution];
+  count.voxels = double(result.voxels_occupied);
+  count.voxel_side = double(result.grid.voxel);
+  if (!settings.bounce.count) count.auto_bounces = result.bounces;
   if (!times) return;
   const Work done = work(settings, pixels);
-  rates_.voxelize = result.seconds.voxelize / done.voxels;
-  rates_.shade = (result.seconds.shade + result.seconds.mipmap) / done.voxels;
-  if (done.bounce_look_ups > 0.0) rates_.look_up = result.seconds.bounce / done.bounce_look_ups;
-  rates_.pixel_look_up = result.seconds.cone_trace / done.pixel_look_ups;
+  const StageSeconds& s = result.seconds;
+  const auto rate = [](double seconds, double units) {
+    return units > 0.0 ? seconds / units : std::numeric_limits<double>::quiet_NaN();
+  };
+  samples_.push_back(
+      {settings,
+       {rate(s.voxelize, done.voxels), rate(s.shade + s.mipmap, done.voxels), rate(s.bounce, done.bounce_look_ups),
+        rate(s.prepare, done.voxels), rate(s.cone_trace, done.pixel_look_ups)}});
 }
 
 CostModel::Work CostModel::work(const Settings& settings, size_t pixels) const {
-  if (resolution_ == 0) throw std::logic_error("cost model: nothing learned yet");
-  const double scale = double(settings.grid.resolution) / resolution_;  // surfaces: voxels grow with its square
-  const double distance = visibility_.mean_distance / voxel_side_ * scale, step = double(settings.render.cone.step);
+  if (counts_.empty()) throw std::logic_error("cost model: nothing learned yet");
+  const auto far = [&](int resolution) { return std::abs(std::log(double(resolution) / settings.grid.resolution)); };
+  const auto nearest = std::min_element(counts_.begin(), counts_.end(),
+                                        [&](const auto& a, const auto& b) { return far(a.first) < far(b.first); });
+  const double scale = double(settings.grid.resolution) / nearest->first;
+  const double step = double(settings.render.cone.step);
+  const double distance = std::max(visibility_.mean_distance / nearest->second.voxel_side * scale, 1.0);
   const auto cone_cost = [&](const ConeSet& set) {
-    return double(set.cones.size()) * look_ups(std::max(mean_tangent(set), 1e-3), step, std::max(distance, 1.0));
+    return double(set.cones.size()) * look_ups(std::max(mean_tangent(set), 1e-3), step, distance);
   };
-  const int bounces = settings.bounce.count.value_or(auto_bounces_ > 0 ? auto_bounces_ : usual_auto_bounces);
+  int bounces = settings.bounce.count.value_or(nearest->second.auto_bounces);
+  if (bounces == 0 && !settings.bounce.count) {
+    bounces = usual_auto_bounces;
+    for (const auto& [resolution, count] : counts_)
+      if (count.auto_bounces > 0) bounces = count.auto_bounces;
+  }
   Work work{};
-  work.voxels = voxels_ * scale * scale;
+  work.voxels = nearest->second.voxels * scale * scale;  // surfaces: voxels grow with the resolution's square
   work.bounce_look_ups = work.voxels * bounces * cone_cost(voxel_cones(settings.bounce.cones));
   work.pixel_look_ups = double(pixels) * cone_cost(pixel_cones(settings.render.cone.diffuse));
   return work;
 }
 
+StageRates CostModel::rates(const Settings& wanted) const {
+  // What an image's look-ups take depends on cones and step too, since each pixel costs something itself.
+  const auto median = [&](double StageRates::*rate, bool image) {
+    const auto unlike = [&](const Settings& s) {
+      const ConeOptions &a = s.render.cone, &b = wanted.render.cone;
+      return std::tuple(image ? std::abs(std::log(double(a.diffuse) / b.diffuse)) : 0.0, a.step != b.step,
+                        s.storage != wanted.storage,
+                        std::abs(std::log(double(s.grid.resolution) / wanted.grid.resolution)));
+    };
+    std::optional<decltype(unlike(wanted))> least;
+    std::vector<double> values;
+    for (const Sample& sample : samples_) {
+      if (!std::isfinite(sample.rates.*rate)) continue;
+      const auto distance = unlike(sample.settings);
+      if (least && *least < distance) continue;
+      if (least && distance < *least) values.clear();
+      least = distance;
+      values.push_back(sample.rates.*rate);
+    }
+    return values.empty() ? rates_.*rate : spread(values).median;
+  };
+  return {median(&StageRates::voxelize, false), median(&StageRates::shade, false), median(&StageRates::look_up, false),
+          median(&StageRates::prepare, false), median(&StageRates::pixel_look_up, true)};
+}
+
 StageSeconds CostModel::predict(const Settings& settings, size_t pixels) const {
   const Work w = work(settings, pixels);
+  const StageRates r = rates(settings);
   StageSeconds seconds;
-  seconds.voxelize = rates_.voxelize * w.voxels;
-  seconds.shade = rates_.shade * w.voxels;
-  seconds.bounce = rates_.look_up * w.bounce_look_ups;
-  seconds.cone_trace = rates_.pixel_look_up * w.pixel_look_ups;
-  seconds.total = seconds.voxelize + seconds.shade + seconds.bounce + seconds.cone_trace;
+  seconds.voxelize = r.voxelize * w.voxels;
+  seconds.shade = r.shade * w.voxels;
+  seconds.bounce = r.look_up * w.bounce_look_ups;
+  seconds.prepare = r.prepare * w.voxels;
+  seconds.cone_trace = r.pixel_look_up * w.pixel_look_ups;
+  seconds.total = seconds.voxelize + seconds.shade + seconds.bounce + seconds.prepare + seconds.cone_trace;
   return seconds;
 }
 

@@ -5,62 +5,34 @@
 
 namespace voxref {
 
-namespace {
+double MeanSquare::root(double errors) const { return std::sqrt(std::max(0.0, value + errors * error)); }
 
-void add_layer(const Image& image, const char* layer, std::vector<double>& values) {
-  const auto planes = image.layer(layer);
-  values.resize(image.pixel_count());
-  for (size_t i = 0; i < values.size(); ++i) values[i] += luminance({planes[0][i], planes[1][i], planes[2][i]});
-}
-
-}  // namespace
-
-double Measured::mean() const {
-  double sum = 0.0;
-  for (const double v : value) sum += v;
-  return sum / static_cast<double>(value.size());
-}
-
-bool compares_indirect(const Scene& scene, const View& view) {
-  return !scene.has_emission() && view.background == glm::vec3(0.0f);
-}
-
-Measured measured_cone(const Image& cone, bool indirect) {
-  Measured result;
-  if (indirect) {
-    add_layer(cone, "diffuse", result.value);
-    add_layer(cone, "specular", result.value);
-  } else {
-    add_layer(cone, "", result.value);
+MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances) {
+  const auto count = static_cast<double>(differences.size());
+  double sum = 0.0, variance = 0.0, least = 0.0;
+  for (size_t i = 0; i < differences.size(); ++i) {
+    const double d2 = differences[i] * differences[i], v = variances[i];
+    sum += d2 - v;
+    variance += 4.0 * d2 * v - 2.0 * v * v;
+    least += 2.0 * v * v;
   }
-  result.standard_error.assign(result.value.size(), 0.0);
-  return result;
-}
-
-Measured measured_path(const Image& path, bool indirect) {
-  Measured result;
-  add_layer(path, indirect ? "indirect" : "", result.value);
-  const auto errors = path.channel(indirect ? "stderr.indirect.Y" : "stderr.Y");
-  result.standard_error.assign(errors.begin(), errors.end());
-  return result;
+  return {sum / count, std::sqrt(std::max(least, variance)) / count};
 }
 
 Deviation deviation(const Measured& a, const Measured& b) {
-  const auto count = static_cast<double>(b.value.size());
-  double square = 0.0, noise = 0.0, moved = 0.0;
+  std::vector<double> differences(b.value.size()), variances(b.value.size());
   for (size_t i = 0; i < b.value.size(); ++i) {
-    const double d = a.value[i] - b.value[i];
-    const double s2 = a.standard_error[i] * a.standard_error[i] + b.standard_error[i] * b.standard_error[i];
-    square += d * d / count;
-    noise += s2 / count;
-    moved += d * d * s2;
+    differences[i] = a.value[i] - b.value[i];
+    variances[i] = a.standard_error[i] * a.standard_error[i] + b.standard_error[i] * b.standard_error[i];
   }
   const double mean = b.mean();
-  Deviation result;
-  result.bias = a.mean() / mean - 1.0;
-  result.rel_error = std::sqrt(std::max(0.0, square - noise)) / mean;
-  result.rel_error_error = square > 0.0 ? std::sqrt(moved / square) / count / mean : 0.0;
-  return result;
+  const auto over = [](double value, double unit) { return value == 0.0 ? 0.0 : value / unit; };  // 0 of black is 0
+  const MeanSquare square = mean_square(differences, variances);
+  return {over(a.mean() - mean, mean), {over(square.value, mean * mean), over(square.error, mean * mean)}};
+}
+
+bool has_indirect_to_compare(const Scene& scene, const View& view, const Image& path) {
+  return compares_indirect(scene, view) && measured_path(path, true).mean() > 0.0;
 }
 
 }  // namespace voxref

@@ -1,35 +1,39 @@
 #pragma once
 #include <span>
-#include <vector>
 
-#include "image/image.h"
-#include "progress.h"
-#include "scene/caster.h"
-#include "scene/scene.h"
+#include "compare/measured.h"
 
 namespace voxref {
 
-/// The light that studies compare, as luminance per pixel, with the standard error of each (0: exact).
-struct Measured {
-  std::vector<double> value, standard_error;
-  double mean() const;
+/// Mean over pixels of the squares of differences that are known up to noise, with the noise taken out.
+struct MeanSquare {
+  double value = 0;  ///< unbiased, and therefore below 0 at times where there is little but noise
+  double error = 0;  ///< its standard error
+  /// Square root of the value moved by so many standard errors; 0 where that is negative.
+  double root(double errors = 0.0) const;
+  /// Half of what one standard error to either side spans in the root.
+  double root_stderr() const { return 0.5 * (root(1.0) - root(-1.0)); }
 };
 
-/// Light that `check` compares (cli.md): indirect, where all lights are punctual, else all.
-bool compares_indirect(const Scene& scene, const View& view);
-/// @param cone,path as render_cones and path_trace return them
-Measured measured_cone(const Image& cone, bool indirect);
-Measured measured_path(const Image& path, bool indirect);
+/// Of differences d with independent noise of variance v each: mean(d^2 - v). Noise gives d^2 the variance
+/// 4 D^2 v + 2 v^2, D being the true difference, of which 4 d^2 v - 2 v^2 is an unbiased estimate,
+/// and 2 v^2 the least that it can be.
+MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances);
 
-/// How far one is from the other.
+/// How far one image is from another that is taken for true.
 struct Deviation {
-  double bias = 0;             ///< mean(a) / mean(b) - 1
-  double rel_error = 0;        ///< of cli.md: RMS of a - b over mean(b), the noise of both taken out
-  double rel_error_error = 0;  ///< its standard error, from that noise
+  double bias = 0;    ///< mean(a) / mean(b) - 1
+  MeanSquare square;  ///< of (a - b) / mean(b), the noise of both taken out
+  /// rel_error of cli.md.
+  double rel_error() const { return square.root(); }
+  double rel_error_stderr() const { return square.root_stderr(); }
 };
-/// With d = a - b and s^2 the sum of both squared standard errors, rel_error = sqrt(mean(d^2) - mean(s^2)) / mean(b),
-/// at least 0. Noise moves mean(d^2) by sum 2 d s / n, thus rel_error by sqrt(sum d^2 s^2) / (n sqrt(mean(d^2))
-/// mean(b)). All NaN where b is black.
+
+/// 0 where both are black; infinite where b alone is.
 Deviation deviation(const Measured& a, const Measured& b);
+
+/// Whether studies and plans compare the indirect light: as compares_indirect, but all light where paths found none
+/// that is indirect. @param path of the scene from there
+bool has_indirect_to_compare(const Scene& scene, const View& view, const Image& path);
 
 }  // namespace voxref

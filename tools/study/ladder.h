@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "compare/statistics.h"
 #include "settings.h"
+#include "study/deviation.h"
 #include "study/study.h"
 
 namespace voxref {
@@ -16,11 +18,17 @@ struct RungImage {
 
 /// How far a rung is from another, over some pixels.
 struct RungStep {
-  double bias = 0, bias_error = 0;  ///< mean difference, and its standard error from the tries
-  double rms = 0, rms_error = 0;    ///< RMS difference per pixel, noise removed, and its standard error
+  Estimate bias;      ///< mean difference, radiance; its error from the tries, 0 where there is but one
+  MeanSquare square;  ///< of the differences per pixel, noise removed
 };
 /// Pairs the tries, so that noise which both share cancels. @param pixels indices; at least one
 RungStep rung_step(const RungImage& from, const RungImage& to, const std::vector<size_t>& pixels);
+
+/// Part of the image.
+struct Region {
+  std::string name;
+  std::vector<size_t> pixels;
+};
 
 struct LadderOptions {
   int resolution = 128;   ///< a power of two, for the published rungs
@@ -33,10 +41,21 @@ struct LadderOptions {
   bool published = true;  ///< goes on to villegas2016, parameter by parameter
 };
 
-/// The rungs from the path tracer to the shipped settings, each different from the one before in one thing. All light
-/// (R,G,B) at the pixels' centres. @param first_published set to the first rung of published parameters
-std::vector<RungImage> climb_ladder(const StudyScene& scene, const View& view, const LadderOptions& options,
-                                    size_t& first_published, const Progress& progress);
+struct LadderClimb {
+  std::vector<RungImage> rungs;
+  size_t shipped = 0;          ///< the rung of the shipped settings; those of other storages follow
+  size_t first_published = 0;  ///< the first rung of published parameters, which start from bytes as storage
+  std::vector<double> direct;  ///< direct light that paths found, luminance per pixel
+};
+/// The rungs from the path tracer to the shipped settings and on, each different from the one before in one thing. All
+/// light (R,G,B) at the pixels' centres. @throws Interrupted
+LadderClimb climb_ladder(const StudyScene& scene, const View& view, const LadderOptions& options,
+                         const Progress& progress);
+
+/// Whether the rungs up to the published ones, added up, are what separates their ends: both are rendered anew, the
+/// path-traced one with another seed. A row per region; `p` is the probability of a gap at least as large by chance.
+Table closure(const StudyScene& scene, const View& view, const LadderOptions& options, const LadderClimb& climb,
+              const std::vector<Region>& regions, const Progress& progress);
 
 Section ladder_section(const StudyScene& scene, const LadderOptions& options, const std::filesystem::path& gpu_image,
                        const Progress& progress);

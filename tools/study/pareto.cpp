@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <numeric>
 
+#include "compare/statistics.h"
 #include "reference/path.h"
 #include "study/cone_runner.h"
 #include "study/deviation.h"
@@ -18,93 +19,120 @@ namespace voxref {
 
 namespace {
 
-constexpr double confidence = 1.96;  // standard errors to either side of a 95 % interval
+constexpr double significance = 0.05;  // outside of 95 % confidence limits
+constexpr double normal_limit = 1.96;  // standard errors to that; the noise of thousands of pixels adds to a normal one
+
+PathResult trace_paths(const StudyScene& scene, const Caster& caster, const View& view, const PathOptions& options,
+                       const Progress& progress) {
+  PathResult result = path_trace(scene.scene, caster, view, options, progress);
+  if (result.interrupted) throw Interrupted();
+  return result;
+}
 
 struct Setup {
   const StudyScene& scene;
   View view;
   Caster caster;
-  bool indirect;
-  Measured truth;
+  bool indirect = false;
+  Measured truth{};
 };
 
 Setup make_setup(const StudyScene& scene, const ParetoGrid& grid, const Progress& progress) {
-  Setup setup{
-      scene, sized(scene.view, grid.width), Caster(scene.scene), compares_indirect(scene.scene, scene.view), {}};
+  Setup setup{scene, sized(scene.view, grid.width), Caster(scene.scene)};
   PathOptions options;
   options.spp = grid.reference_spp;
-  setup.truth =
-      measured_path(path_trace(scene.scene, setup.caster, setup.view, options, progress).image, setup.indirect);
+  const Image truth = trace_paths(scene, setup.caster, setup.view, options, progress).image;
+  setup.indirect = has_indirect_to_compare(scene.scene, setup.view, truth);
+  setup.truth = measured_path(truth, setup.indirect);
   return setup;
 }
 
-std::string word(const std::optional<int>& bounces) { return bounces ? std::to_string(*bounces) : "auto"; }
-std::string word(Storage storage) {
-  Settings settings;
-  settings.storage = storage;
-  return to_json(settings)["storage"];
+std::vector<Column> measured_columns() {
+  return {{"time", "s"},     {"time_least", "s"},   {"time_greatest", "s"},
+          {"rel_error", ""}, {"rel_error_low", ""}, {"rel_error_high", ""}};
+}
+
+std::vector<Cell> measured_cells(const Spread& time, double error, const Interval& limits) {
+  return {time.median, time.least, time.greatest, error, limits.low, limits.high};
+}
+
+void append(std::vector<Cell>& row, const std::vector<Cell>& more) { row.insert(row.end(), more.begin(), more.end()); }
+
+/// The seconds that each setting took, per round; one round after another, so that a busy spell does not hit a setting
+/// in all of them. @param first is told every result of the first round
+template <class First>
+std::vector<std::vector<double>> time_settings(const Setup& setup, const ParetoGrid& grid, const Progress& progress,
+                                               const First& first) {
+  const std::vector<SettingPoint> points = all_points(grid.space);
+  std::vector<std::vector<double>> seconds(points.size());
+  for (int round = 0; round < grid.rounds; ++round) {
+    ConeRunner runner(setup.scene.scene, setup.caster, setup.view, progress);
+    for (size_t i = 0; i < points.size(); ++i) {
+      progress.check();
+      const Settings settings = at(grid.space, points[i], {});
+      const ConeTraceResult result = runner(settings);
+      seconds[i].push_back(result.seconds.total);
+      if (round == 0) first(settings, result);
+    }
+  }
+  return seconds;
 }
 
 Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& progress) {
   Table table{"pareto_" + setup.scene.name + "_cones",
-              "Cone tracer: every setting with its error and the seconds of all its stages",
-              {{"voxels", ""},
-               {"bounces", ""},
-               {"storage", ""},
-               {"step", ""},
-               {"cones", ""},
-               {"time", "s"},
-               {"rel_error", ""},
-               {"rel_error_95", ""},
-               {"bias", ""},
-               {"memory", "MiB"},
-               {"frontier", ""}},
+              fmt::format("Cone tracer: every setting with its error and the seconds of all its stages, {} rounds",
+                          grid.rounds),
+              setting_columns(),
               {}};
-  ConeRunner runner(setup.scene.scene, setup.caster, setup.view, progress);
-  Settings settings;
-  for (const int resolution : grid.resolutions)
-    for (const auto& bounces : grid.bounces)
-      for (const Storage storage : grid.storages)
-        for (const float step : grid.steps)
-          for (const int cones : grid.cones) {
-            progress.check();
-            settings.grid.resolution = resolution;
-            settings.bounce.count = bounces;
-            settings.storage = storage;
-            settings.render.cone.step = step;
-            settings.render.cone.diffuse = cones;
-            const ConeTraceResult result = runner(settings);
-            const Deviation d = deviation(measured_cone(result.image.image, setup.indirect), setup.truth);
-            table.add({double(resolution), word(bounces), word(storage), double(step), double(cones),
-                       result.seconds.total, d.rel_error, confidence * d.rel_error_error, d.bias,
-                       std::ldexp(double(result.bytes.at("total")), -20), std::string()});
-          }
+  for (const Column& column : measured_columns()) table.columns.push_back(column);
+  table.columns.insert(table.columns.end(), {{"rel_bias", ""}, {"memory", "MiB"}, {"frontier", ""}});
+  struct Found {
+    Settings settings;
+    Deviation deviation;
+    double bytes;
+  };
+  std::vector<Found> found;
+  const auto seconds =
+      time_settings(setup, grid, progress, [&](const Settings& settings, const ConeTraceResult& result) {
+        found.push_back({settings, deviation(measured_cone(result.image.image, setup.indirect), setup.truth),
+                         double(result.bytes.at("total"))});
+      });
+  for (size_t i = 0; i < found.size(); ++i) {
+    const Deviation& d = found[i].deviation;
+    std::vector<Cell> row = setting_cells(found[i].settings);
+    append(row, measured_cells(spread(seconds[i]), d.rel_error(),
+                               {d.square.root(-normal_limit), d.square.root(normal_limit)}));
+    append(row, {d.bias, std::ldexp(found[i].bytes, -20), std::string()});
+    table.add(std::move(row));
+  }
   return table;
 }
 
 /// Error and time of images that are all the path tracer's, over independent seeds; the noise is the error.
 Table path_table(const Setup& setup, const ParetoGrid& grid, const Progress& progress) {
   Table table{"pareto_" + setup.scene.name + "_paths",
-              fmt::format("Path tracer: mean of {} seeds", grid.seeds),
-              {{"samples", ""}, {"time", "s"}, {"rel_error", ""}, {"rel_error_95", ""}},
+              fmt::format("Path tracer: mean error of {} seeds", grid.seeds),
+              {{"samples", ""}},
               {}};
+  for (const Column& column : measured_columns()) table.columns.push_back(column);
   for (int spp = 1; spp <= grid.most_spp; spp *= 2) {
-    double seconds = 0.0, sum = 0.0, squares = 0.0;
+    std::vector<double> seconds, errors;
     for (int seed = 1; seed <= grid.seeds; ++seed) {
       PathOptions options;
       options.spp = spp;
       options.randomizations = 1;
       options.seed = static_cast<uint64_t>(seed);  // the truth has seed 0
-      const PathResult result = path_trace(setup.scene.scene, setup.caster, setup.view, options, progress);
+      const PathResult result = trace_paths(setup.scene, setup.caster, setup.view, options, progress);
       Measured image = measured_path(result.image, setup.indirect);
       image.standard_error.assign(image.value.size(), 0.0);
-      const double error = deviation(image, setup.truth).rel_error;
-      seconds += result.seconds / grid.seeds;
-      sum += error / grid.seeds;
-      squares += error * error / grid.seeds;
+      errors.push_back(deviation(image, setup.truth).rel_error());
+      seconds.push_back(result.seconds);
     }
-    const double variance = std::max(0.0, squares - sum * sum) / (grid.seeds - 1);
-    table.add({double(spp), seconds, sum, confidence * std::sqrt(variance)});
+    const Estimate error = estimate(errors);
+    const double limit = student_quantile(significance, error.freedom) * error.error;
+    std::vector<Cell> row = {double(spp)};
+    append(row, measured_cells(spread(seconds), error.mean, {std::max(0.0, error.mean - limit), error.mean + limit}));
+    table.add(std::move(row));
   }
   return table;
 }
@@ -116,9 +144,34 @@ std::vector<Tradeoff> tradeoffs(const Table& table) {
   return points;
 }
 
-ChartPoint chart_point(const Table& table, size_t row, const std::string& label) {
-  return {table.number(row, "time"), 100.0 * table.number(row, "rel_error"), 100.0 * table.number(row, "rel_error_95"),
-          label};
+/// @param bars whether its error bars are drawn: of hundreds of points they would hide each other
+ChartPoint chart_point(const Table& table, size_t row, const std::string& label, bool bars) {
+  const auto percent = [&](const char* column) { return 100.0 * table.number(row, column); };
+  ChartPoint point{table.number(row, "time"), percent("rel_error"), 0.0, label};
+  if (!bars) return point;
+  point.x_bar = Interval{table.number(row, "time_least"), table.number(row, "time_greatest")};
+  point.y_bar = Interval{percent("rel_error_low"), percent("rel_error_high")};
+  return point;
+}
+
+/// What the letters at the frontier mean, and the frontier itself.
+Series frontier_series(const Table& cones, std::span<const size_t> frontier, std::vector<std::string>& notes) {
+  Series series{"the cones' frontier", ChartStyle::line_points, {}};
+  notes.emplace_back("On the frontier:");
+  double labelled = 0.0;
+  for (const size_t i : frontier) {
+    constexpr double room = 1.15;  // in time, that a letter needs of its own
+    std::string letter;
+    if (cones.number(i, "time") > room * labelled) {
+      labelled = cones.number(i, "time");
+      letter = static_cast<char>('a' + static_cast<int>(notes.size() - 1) % 26);
+      const auto word = [&](const char* column) { return display(cones.rows[i][cones.column(column)]); };
+      notes.push_back(fmt::format("{}  {} voxels, bounces {}, {}, step {}, {} cones", letter, word("voxels"),
+                                  word("bounces"), word("storage"), word("step"), word("cones")));
+    }
+    series.points.push_back(chart_point(cones, i, letter, true));
+  }
+  return series;
 }
 
 Chart pareto_chart(const Setup& setup, const Table& cones, const Table& paths, std::span<const size_t> frontier) {
@@ -132,24 +185,14 @@ Chart pareto_chart(const Setup& setup, const Table& cones, const Table& paths, s
   for (size_t i = 0; i < cones.rows.size(); ++i) {
     Series& series = by_resolution[cones.number(i, "voxels")];
     series.title = fmt::format("cones, {} voxels", cones.number(i, "voxels"));
-    series.points.push_back(chart_point(cones, i, ""));
+    series.points.push_back(chart_point(cones, i, "", false));
   }
-  Series samples{"path tracer, samples", ChartStyle::line_points, {}};
+  Series samples{"path tracer, samples per pixel", ChartStyle::line_points, {}};
   for (size_t i = 0; i < paths.rows.size(); ++i)
-    samples.points.push_back(chart_point(paths, i, fmt::format("{}", paths.number(i, "samples"))));
-  Series best{"cones' frontier: voxels/cones/bounces", ChartStyle::line, {}};
-  double labelled = 0.0;
-  for (const size_t i : frontier) {
-    // A label needs a fifth of a decade of its own.
-    const bool room = cones.number(i, "time") > 1.6 * labelled;
-    if (room) labelled = cones.number(i, "time");
-    const std::string label = fmt::format("{}/{}/{}", cones.number(i, "voxels"), cones.number(i, "cones"),
-                                          std::get<std::string>(cones.rows[i][cones.column("bounces")]));
-    best.points.push_back(chart_point(cones, i, room ? label : ""));
-  }
+    samples.points.push_back(chart_point(paths, i, fmt::format("{}", paths.number(i, "samples")), true));
   for (auto& [resolution, series] : by_resolution) chart.series.push_back(std::move(series));
   chart.series.push_back(std::move(samples));
-  chart.series.push_back(std::move(best));
+  chart.series.push_back(frontier_series(cones, frontier, chart.notes));
   return chart;
 }
 
@@ -158,12 +201,9 @@ std::string findings(const Table& cones, const Table& paths, std::span<const siz
   const double error = cones.number(best, "rel_error");
   std::string text = fmt::format(
       "Error: RMS difference of luminance over the mean of the path-traced light, with the noise of the truth removed "
-      "and "
-      "95 % confidence limits. Time: of all stages, measured once each on this machine and booked to every setting "
-      "that "
-      "uses them; for the path tracer that of its render loop.\n\nThe most accurate of {} settings is {:.1f} % off in "
-      "{:.3g} "
-      "s.",
+      "and 95 % confidence limits. Time: of all stages, booked to every setting that uses them, for the path tracer of "
+      "its render loop; the median, and the least and the greatest measured on this machine.\n\n"
+      "The most accurate of {} settings is {:.1f} % off in {:.3g} s.",
       cones.rows.size(), 100.0 * error, cones.number(best, "time"));
   for (size_t i = 0; i < paths.rows.size(); ++i)
     if (paths.number(i, "rel_error") <= error)
@@ -201,37 +241,26 @@ Section pareto_section(const StudyScene& scene, const ParetoGrid& grid, const Pr
 }
 
 StudyResult run_pareto(const StudyRequest& request) {
-  ParetoGrid grid{{32, 64, 128, 256},
-                  {4, 6, 9, 16, 32, 64},
-                  {0.25f, 0.5f, 1.0f},
-                  {0, 1, 2, std::nullopt},
-                  {Storage::float32, Storage::unorm8},
-                  256,
+  ParetoGrid grid{{{32, 64, 128, 256},
+                   {0, 1, 2, std::nullopt},
+                   {Storage::unorm8, Storage::float32},
+                   {1.0f, 0.5f, 0.25f},
+                   {4, 6, 9, 16, 32, 64}},
+                  192,
                   1024,
                   256,
-                  4};
+                  4,
+                  3};
   if (request.quick)
-    grid = {{24, 48, 96},
-            {4, 6, 16, 32},
-            {0.5f, 1.0f},
-            {0, 1, std::nullopt},
-            {Storage::float32, Storage::unorm8},
-            96,
+    grid = {{{24, 48, 96}, {0, 1, std::nullopt}, {Storage::unorm8, Storage::float32}, {1.0f, 0.5f}, {4, 6, 16, 32}},
+            64,
             256,
             64,
+            4,
             3};
   StudyResult result{"pareto", "speed against accuracy", {}, {}};
-  std::vector<StudyScene> own;
-  if (request.scenes.empty()) {
-    own = {cornell_point_scene(), light_box_scene()};
-    if (!request.quick) {
-      if (auto sponza = public_scene("sponza", request.assets, true))
-        own.push_back(std::move(*sponza));
-      else
-        result.skipped.push_back("sponza: not in VOXREF_ASSETS");
-    }
-  }
-  for (const StudyScene& scene : request.scenes.empty() ? own : request.scenes)
+  for (const StudyScene& scene :
+       scenes_or_own(request, {cornell_point_scene(), light_box_scene()}, true, result.skipped))
     result.sections.push_back(pareto_section(scene, grid, request.progress));
   return result;
 }

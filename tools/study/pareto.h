@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "settings.h"
+#include "study/setting_space.h"
 #include "study/study.h"
 
 namespace voxref {
@@ -15,19 +15,18 @@ struct Tradeoff {
 /// Indices of those that no other beats in one without losing in the other, by rising time.
 std::vector<size_t> pareto_frontier(std::span<const Tradeoff> points);
 
-/// The values of the parameters whose product is tried.
+/// What is tried, and how carefully.
 struct ParetoGrid {
-  std::vector<int> resolutions, cones;
-  std::vector<float> steps;
-  std::vector<std::optional<int>> bounces;  ///< none: auto
-  std::vector<Storage> storages;
+  SettingSpace space;
   int width = 64;  ///< pixels
   int reference_spp = 256;
   int most_spp = 64;  ///< of the path tracer on the chart
-  int seeds = 4;      ///< independent path-traced images per number of samples
+  int seeds = 4;      ///< independent path-traced images per number of samples, at least 2
+  int rounds = 3;     ///< in which each setting's time is measured
 };
 
-/// One chart and two tables for one scene.
+/// One chart and two tables for one scene. Times are medians over the rounds, with the least and the greatest; errors
+/// have 95 % confidence limits. @throws Interrupted
 Section pareto_section(const StudyScene& scene, const ParetoGrid& grid, const Progress& progress);
 
 }  // namespace voxref

@@ -6,19 +6,19 @@
 
 #include "reference/path.h"
 #include "study/cone_runner.h"
+#include "study/deviation.h"
 #include "study/study_scenes.h"
 
 namespace voxref {
 
 namespace {
 
-constexpr size_t image_bytes_per_pixel = 4 * 23;  // float32 channels of the cone tracer's image
-
 /// Measures settings of one scene at small size, and predicts them at full size.
 class Workbench {
  public:
   Workbench(const Scene& scene, const Caster& caster, const View& view, const Settings& base,
-            const PlanOptions& options, const PlanSpace& space, const Visibility& visibility, const Progress& progress)
+            const PlanOptions& options, const SettingSpace& space, const Visibility& visibility,
+            const Progress& progress)
       : space_(space),
         base_(base),
         full_pixels_(size_t(view.width) * size_t(view.height)),
@@ -28,27 +28,40 @@ class Workbench {
         cost_(visibility, options.rates.value_or(StageRates{})) {
     PathOptions path;
     path.spp = options.reference_spp;
-    const Image truth = path_trace(scene, caster, small_, path, progress).image;
-    indirect_ = compares_indirect(scene, view) && measured_path(truth, true).mean() > 0.0;
-    truth_ = measured_path(truth, indirect_);
+    const PathResult truth = path_trace(scene, caster, small_, path, progress);
+    if (truth.interrupted) throw Interrupted();
+    indirect_ = has_indirect_to_compare(scene, view, truth.image);
+    truth_ = measured_path(truth.image, indirect_);
+    mean_ = truth_.mean();
     // Counts voxels, and times the stages, before the first prediction.
-    PlanPoint coarsest{};
+    SettingPoint coarsest{};
     learn(coarsest, run(coarsest));
   }
 
-  PlanTrial measure(const PlanPoint& point) {
+  PlanTrial measure(const SettingPoint& point) {
     const ConeTraceResult result = run(point);
     learn(point, result);
-    const Deviation d = deviation(measured_cone(result.image.image, indirect_), truth_);
+    const Measured cone = measured_cone(result.image.image, indirect_);
+    const Deviation d = deviation(cone, truth_);
     bytes_[point] = result.bytes.at("total");
-    return {point, d.rel_error, d.rel_error_error};
+    PlanTrial trial{point, d.rel_error(), d.rel_error_stderr()};
+    for (size_t i = 0; i < cone.value.size(); ++i)
+      trial.difference.push_back(relative(cone.value[i] - truth_.value[i], mean_));
+    return trial;
   }
 
-  double cost(const PlanPoint& point) const { return cost_.predict(settings(point), full_pixels_).total; }
+  /// Mean variance of a trial's differences.
+  double noise() const {
+    double sum = 0.0;
+    for (const double s : truth_.standard_error) sum += relative(s * s, mean_ * mean_);
+    return sum / static_cast<double>(truth_.standard_error.size());
+  }
+
+  double cost(const SettingPoint& point) const { return cost_.predict(settings(point), full_pixels_).total; }
 
   PlannedSetting planned(const PlanTrial& trial) const {
-    return {settings(trial.point), trial.error, trial.error_bar, cost(trial.point),
-            bytes_.at(trial.point) + image_bytes_per_pixel * full_pixels_};
+    return {settings(trial.point), trial.rel_error, trial.rel_error_stderr, cost(trial.point),
+            bytes_.at(trial.point) + cone_image_bytes_per_pixel * full_pixels_};
   }
 
   bool indirect() const { return indirect_; }
@@ -59,15 +72,22 @@ class Workbench {
     view.camera.aspect = float(view.width) / float(view.height);
     return sized(view, std::min(width, view.width));
   }
-  Settings settings(const PlanPoint& point) const { return at(space_, point, base_); }
+  /// Black against black is no error.
+  static double relative(double value, double unit) { return value == 0.0 ? 0.0 : value / unit; }
+  Settings settings(const SettingPoint& point) const { return at(space_, point, base_); }
   size_t small_pixels() const { return size_t(small_.width) * size_t(small_.height); }
-  ConeTraceResult run(const PlanPoint& point) { return runner_(settings(point)); }
-  void learn(const PlanPoint& point, const ConeTraceResult& result) {
+  ConeTraceResult run(const SettingPoint& point) { return runner_(settings(point)); }
+  void learn(const SettingPoint& point, const ConeTraceResult& result) {
     cost_.learn(settings(point), result, small_pixels(), measures_times_);
-    modelled_ += cost_.predict(settings(point), small_pixels()).total;
+    // As the runner does it: settings that differ in nothing but the image's cones share the volume.
+    const StageSeconds seconds = cost_.predict(settings(point), small_pixels());
+    SettingPoint volume = point;
+    volume[cone_axis] = 0;
+    modelled_ += volume == last_volume_ ? seconds.cone_trace : seconds.total;
+    last_volume_ = volume;
   }
 
-  const PlanSpace& space_;
+  const SettingSpace& space_;
   const Settings& base_;
   size_t full_pixels_;
   View small_;
@@ -76,28 +96,20 @@ class Workbench {
   CostModel cost_;
   bool indirect_ = false;
   Measured truth_;
-  std::map<PlanPoint, size_t> bytes_;
+  double mean_ = 0.0;
+  std::map<SettingPoint, size_t> bytes_;
+  std::optional<SettingPoint> last_volume_;
   double modelled_ = 0.0;
 };
 
-Table trial_table(const PlanSearch& search, const PlanSpace& space, const Settings& base, const Workbench& bench) {
-  Table table{"plan_trials",
-              "What was measured, in this order; times are predicted for the full size",
-              {{"voxels", ""},
-               {"bounces", ""},
-               {"cones", ""},
-               {"step", ""},
-               {"storage", ""},
-               {"rel_error", ""},
-               {"rel_error_stderr", ""},
-               {"time", "s"}},
-              {}};
+Table trial_table(const PlanSearch& search, const SettingSpace& space, const Settings& base, const Workbench& bench) {
+  Table table{
+      "plan_trials", "What was measured, in this order; times are predicted for the full size", setting_columns(), {}};
+  table.columns.insert(table.columns.end(), {{"rel_error", ""}, {"rel_error_stderr", ""}, {"time", "s"}});
   for (const PlanTrial& trial : search.trials) {
-    const nlohmann::json s = to_json(at(space, trial.point, base));
-    const nlohmann::json& bounces = s["bounce"]["count"];
-    table.add({s["grid"]["resolution"].get<double>(), bounces.is_string() ? "auto" : bounces.dump(),
-               s["cone"]["diffuse"].get<double>(), s["cone"]["step"].get<double>(), s["storage"].get<std::string>(),
-               trial.error, trial.error_bar, bench.cost(trial.point)});
+    std::vector<Cell> row = setting_cells(at(space, trial.point, base));
+    row.insert(row.end(), {trial.rel_error, trial.rel_error_stderr, bench.cost(trial.point)});
+    table.add(std::move(row));
   }
   return table;
 }
@@ -118,24 +130,22 @@ Plan make_plan(const Scene& scene, const Caster& caster, const View& view, const
                const PlanOptions& options, const Progress& progress) {
   Plan plan;
   const Visibility visibility = measure_visibility(scene, caster);
-  PlanSpace space = options.space;
+  SettingSpace space = options.space;
   plan.dropped = drop_unused(space, scene, visibility, view.background);
   Workbench bench(scene, caster, view, base, options, space, visibility, progress);
   plan.indirect = bench.indirect();
 
-  const PlanSearch search = options.search(space, options.budget,
-                                           {[&](const PlanPoint& point) { return bench.measure(point); },
-                                            [&](const PlanPoint& point) { return bench.cost(point); }});
+  const PlanSearch search =
+      options.search(space, options.budget,
+                     {[&](const SettingPoint& point) { return bench.measure(point); },
+                      [&](const SettingPoint& point) { return bench.cost(point); }, bench.noise()});
+  const auto planned = [&](const std::optional<PlanTrial>& trial) {
+    return trial ? std::optional(bench.planned(*trial)) : std::nullopt;
+  };
   plan.closest = bench.planned(*search.closest);
-  if (search.best) {
-    plan.best = bench.planned(*search.best);
-    for (const PlanTrial& trial : search.trials) {
-      const PlannedSetting other = bench.planned(trial);
-      if (other.seconds < plan.best->seconds && (!plan.cheaper || other.error < plan.cheaper->error))
-        plan.cheaper = other;
-      if (other.error < plan.best->error && (!plan.better || other.seconds < plan.better->seconds)) plan.better = other;
-    }
-  }
+  plan.best = planned(search.best);
+  plan.cheaper = planned(search.cheaper);
+  plan.better = planned(search.better);
   plan.trials = trial_table(search, space, base, bench);
   plan.seconds = bench.spent();
   return plan;

@@ -8,8 +8,8 @@ struct PlanOptions {
   double budget = 0.2;      ///< the most that rel_error may be
   int width = 48;           ///< pixels of the images that are measured
   int reference_spp = 512;  ///< of the path-traced image that they are held against
-  PlanSpace space;
-  PlanSearch (*search)(const PlanSpace&, double budget, const PlanOracle&) = search_plan;
+  SettingSpace space;
+  PlanSearch (*search)(const SettingSpace&, double budget, const PlanOracle&) = search_plan;
   /// How fast this machine is, for decisions that do not depend on its clock; none: learned from the runs.
   std::optional<StageRates> rates;
 };
@@ -17,21 +17,19 @@ struct PlanOptions {
 /// A setting with its evidence, at the size that was asked for.
 struct PlannedSetting {
   Settings settings;
-  double error = 0, error_bar = 0;  ///< measured at small size
-  double seconds = 0;               ///< predicted
-  size_t bytes = 0;                 ///< of the volumes and the image; the volumes are measured
+  double rel_error = 0, rel_error_stderr = 0;  ///< measured at small size
+  double seconds = 0;                          ///< predicted
+  size_t bytes = 0;                            ///< of the volumes and the image; the volumes are measured
 };
 
 struct Plan {
-  std::optional<PlannedSetting> best;  ///< none: nothing reaches the budget
-  PlannedSetting closest;              ///< the most accurate that was measured
-  std::optional<PlannedSetting> cheaper,
-      better;                        ///< of those measured: the most accurate that costs less than the
-                                     ///< best, the cheapest that is more accurate; none where there is none
-  std::vector<std::string> dropped;  ///< what the scene does not use
-  bool indirect = false;             ///< whether errors are of the indirect light alone
-  Table trials;                      ///< all that was measured, in that order
-  double seconds = 0;                ///< that the measurements took, each stage once; by `rates` where given
+  std::optional<PlannedSetting> best;             ///< none: nothing reaches the budget
+  PlannedSetting closest;                         ///< the most accurate that was measured
+  std::optional<PlannedSetting> cheaper, better;  ///< the next steps, see PlanSearch; none where there is none
+  std::vector<std::string> dropped;               ///< what the scene does not use
+  bool indirect = false;                          ///< whether errors are of the indirect light alone
+  Table trials;                                   ///< all that was measured, in that order
+  double seconds = 0;  ///< that the measurements took, each stage once; by `rates` where given
 };
 
 /// Plans for one view of a scene. @param view the full size @param base where the other parameters come from

@@ -16,9 +16,10 @@ Section timed_section(const std::string& title, const std::function<void(Section
 
 std::span<const Study> studies() {
   static const std::array list = {
-      Study{"pareto", "error of the indirect light against time, for many settings and for the path tracer",
-            run_pareto},
-      Study{"ladder", "from the path tracer to the shipped settings, one approximation at a time", run_ladder},
+      Study{"pareto", "error of the indirect light against time, for many settings and for the path tracer", run_pareto,
+            true},
+      Study{"ladder", "from the path tracer to the shipped settings, one approximation at a time", run_ladder, true,
+            true},
       Study{"thesis", "the tables of Villegas 2016 with this program's numbers beside them", run_thesis},
       Study{"stability", "a curve for each way in which the method fails, with theory's beside it", run_stability},
   };

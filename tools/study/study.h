@@ -27,6 +27,7 @@ struct StudyResult {
   std::string name, title;
   std::vector<Section> sections;
   std::vector<std::string> skipped;  ///< what was left out, and why
+  std::string command{};             ///< that makes this study alone; the caller's to fill in
 };
 
 /// A scene with the camera that studies look through.
@@ -39,7 +40,7 @@ struct StudyScene {
 /// What a study is asked for.
 struct StudyRequest {
   bool quick = false;               ///< small sizes: minutes instead of an hour
-  std::vector<StudyScene> scenes;   ///< empty: the study's own
+  std::vector<StudyScene> scenes;   ///< for studies that take them; empty: the study's own
   std::filesystem::path assets;     ///< folder that holds assets/, the larger public scenes; empty: there are none
   std::filesystem::path gpu_image;  ///< a user's own rendering of the (single) scene for `ladder`; empty: none
   Progress progress;
@@ -51,6 +52,8 @@ Section timed_section(const std::string& title, const std::function<void(Section
 struct Study {
   std::string name, sentence;
   StudyResult (*run)(const StudyRequest& request);
+  bool takes_scenes = false;     ///< in place of its own
+  bool takes_gpu_image = false;  ///< a user's own rendering
 };
 
 /// All studies, in the order in which `all` runs them.

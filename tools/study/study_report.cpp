@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "file.h"
+#include "study/gnuplot.h"
 
 namespace voxref {
 
@@ -66,8 +67,11 @@ std::string figure_html(const fs::path& svg) {
 
 std::string section_html(const Section& section, const fs::path& folder, bool charts) {
   std::string html = "<h3>" + escape(section.title) + "</h3>\n" + paragraphs(section.text);
-  if (charts)
-    for (const Chart& chart : section.charts) html += figure_html(folder / (chart.name + ".svg"));
+  for (const Chart& chart : section.charts)
+    if (is_empty(chart))
+      html += "<p>No chart \"" + escape(chart.title) + "\": it has no point to draw.</p>\n";
+    else if (charts)
+      html += figure_html(folder / (chart.name + ".svg"));
   for (const Table& table : section.tables) html += table_html(table);
   return html + fmt::format("<p class=\"meta\">Took {:.1f} s.</p>\n", section.seconds);
 }
@@ -83,6 +87,7 @@ std::string page(const fs::path& folder, std::span<const StudyResult> results, c
   if (!charts) html += "<p>Without charts: gnuplot is not installed.</p>\n";
   for (const StudyResult& result : results) {
     html += "<h2>" + escape(result.name) + ": " + escape(result.title) + "</h2>\n";
+    html += "<p class=\"meta\">Made by <code>" + escape(result.command) + "</code></p>\n";
     for (const std::string& skipped : result.skipped) html += "<p>Skipped: " + escape(skipped) + "</p>\n";
     for (const Section& section : result.sections) html += section_html(section, folder, charts);
   }
@@ -105,28 +110,39 @@ nlohmann::json study_result(std::span<const StudyResult> results, const nlohmann
                           {"charts", charts},
                           {"seconds", section.seconds}});
     }
-    list.push_back(
-        {{"name", result.name}, {"title", result.title}, {"skipped", result.skipped}, {"sections", sections}});
+    list.push_back({{"name", result.name},
+                    {"title", result.title},
+                    {"command", result.command},
+                    {"skipped", result.skipped},
+                    {"sections", sections}});
   }
   return {{"provenance", provenance}, {"studies", list}};
 }
 
-void write_studies(const fs::path& folder, std::span<const StudyResult> results, const nlohmann::json& provenance,
-                   const std::optional<fs::path>& gnuplot) {
+void write_study(const fs::path& folder, const StudyResult& result, const nlohmann::json& provenance,
+                 const std::optional<fs::path>& gnuplot) {
   fs::create_directories(folder);
-  for (const StudyResult& result : results)
-    for (const Section& section : result.sections) {
-      for (const Table& table : section.tables) {
-        write_text(folder / (table.name + ".csv"), csv(table));
-        nlohmann::json json = to_json(table);
-        json["provenance"] = provenance;
-        write_text(folder / (table.name + ".json"), json.dump(1) + "\n");
-      }
-      if (gnuplot)
-        for (const Chart& chart : section.charts) draw(chart, *gnuplot, folder);
+  for (const Section& section : result.sections) {
+    for (const Table& table : section.tables) {
+      write_text(folder / (table.name + ".csv"), csv(table));
+      nlohmann::json json = to_json(table);
+      json["provenance"] = provenance;
+      json["command"] = result.command;
+      json["seconds"] = section.seconds;
+      write_text(folder / (table.name + ".json"), json.dump(1) + "\n");
     }
+    if (!gnuplot) continue;
+    for (Chart chart : section.charts) {
+      chart.footer = fmt::format("{}  ({:.0f} s)", result.command, section.seconds);
+      if (!is_empty(chart)) draw(chart, *gnuplot, folder);
+    }
+  }
+}
+
+void write_report(const fs::path& folder, std::span<const StudyResult> results, const nlohmann::json& provenance,
+                  bool charts) {
   write_text(folder / "result.json", study_result(results, provenance).dump(1) + "\n");
-  write_text(folder / "report.html", page(folder, results, provenance, gnuplot.has_value()));
+  write_text(folder / "report.html", page(folder, results, provenance, charts));
 }
 
 }  // namespace voxref

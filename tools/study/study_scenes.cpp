@@ -56,6 +56,18 @@ std::optional<StudyScene> public_scene(const std::string& name, const std::files
   return result;
 }
 
+std::vector<StudyScene> scenes_or_own(const StudyRequest& request, std::vector<StudyScene> own, bool with_sun,
+                                      std::vector<std::string>& skipped) {
+  if (!request.scenes.empty()) return request.scenes;
+  if (request.quick)
+    skipped.emplace_back("sponza: too large for --quick");
+  else if (std::optional<StudyScene> sponza = public_scene("sponza", request.assets, with_sun))
+    own.push_back(std::move(*sponza));
+  else
+    skipped.emplace_back("sponza: not in VOXREF_ASSETS");
+  return own;
+}
+
 View sized(View view, int width) {
   view.width = width;
   view.height = std::max(1, static_cast<int>(std::lround(static_cast<float>(width) / view.camera.aspect)));

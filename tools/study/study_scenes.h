@@ -27,6 +27,11 @@ Light study_sun(float irradiance);
 /// @param assets the folder that holds `assets/` @returns none where the file is absent
 std::optional<StudyScene> public_scene(const std::string& name, const std::filesystem::path& assets, bool sun);
 
+/// The scenes that were asked for, else `own` and, unless the request is quick, sponza; what is left out is named in
+/// `skipped`. @param sun what lights sponza, see public_scene
+std::vector<StudyScene> scenes_or_own(const StudyRequest& request, std::vector<StudyScene> own, bool sun,
+                                      std::vector<std::string>& skipped);
+
 /// The same camera with an image of this width and the camera's aspect.
 View sized(View view, int width);
 

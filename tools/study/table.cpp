@@ -30,8 +30,11 @@ std::string csv(const Cell& cell) {
 
 template <class Range, class Function>
 std::string line(const Range& range, const Function& text) {
-  std::string result;
-  for (const auto& element : range) result += (result.empty() ? "" : ",") + text(element);
+  std::string result, separator;
+  for (const auto& element : range) {
+    result += separator + text(element);
+    separator = ",";
+  }
   return result + "\n";
 }
 

@@ -75,10 +75,10 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
         settings.grid.resolution = resolution;
         const Image cone = reflected(cone_trace(scene.scene, caster, view, settings, {}, progress).image.image);
         const Deviation d = deviation(measured_cone(cone, false), measured_path(truth, false));
-        table.add({scene.name, double(resolution), d.bias + 1.0, d.rel_error, d.rel_error_error, colorfulness(cone),
-                   colorfulness(truth)});
+        table.add({scene.name, double(resolution), d.bias + 1.0, d.rel_error(), d.rel_error_stderr(),
+                   colorfulness(cone), colorfulness(truth)});
         ratios.points.push_back(chart_point(resolution, d.bias + 1.0));
-        errors.points.push_back(chart_point(resolution, d.rel_error, "", d.rel_error_error));
+        errors.points.push_back(chart_point(resolution, d.rel_error(), "", d.rel_error_stderr()));
       }
       better.push_back(errors.points.back().y < errors.points.front().y);
       light.series.push_back(std::move(ratios));

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -14,6 +13,7 @@
 #include "json.h"
 #include "parallel.h"
 #include "parse.h"
+#include "provenance.h"
 #include "summary.h"
 
 namespace voxref {
@@ -120,14 +120,6 @@ SceneBench bench_scene(const std::string& file, const Options& options, const Se
   bench.stages = bench_stages(scene, caster, base_test, settings, std::min(options.rounds, 3), false, silent);
   bench.lookup = bench_lookup(scene, settings);
   return bench;
-}
-
-std::string cpu_model() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (const size_t colon = line.find(": "); line.starts_with("model name") && colon != std::string::npos)
-      return line.substr(colon + 2);
-  return "unknown processor";
 }
 
 std::vector<std::string> default_scenes() {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "commands.h"
+#include "compare/measured.h"
 #include "compare/report.h"
 #include "inputs.h"
 #include "json.h"
@@ -70,8 +71,9 @@ int run_check(const Options& options) {
   const Scene scene = load_scene(options.scene, terminal);
   // The cone tracer's image is there while the path tracer works; comparing the two needs less than that.
   const View view = make_view(options.view, scene, cone_image_bytes_per_pixel + path_bytes_per_pixel(options.path));
-  const bool glow = scene.has_emission() || view.background != glm::vec3(0.0f);
-  if (options.path.max_depth) match_depth(settings, *options.path.max_depth, !scene.lights.empty(), glow, terminal);
+  const bool indirect = compares_indirect(scene, view);
+  if (options.path.max_depth)
+    match_depth(settings, *options.path.max_depth, !scene.lights.empty(), !indirect, terminal);
   const Caster caster(scene);
   // The cone tracer first: it is quick, and refuses what it cannot do before the path tracer has worked for minutes.
   ConeTraceResult cone = cone_trace(scene, caster, view, settings, options.outputs, terminal.progress());
@@ -88,7 +90,7 @@ int run_check(const Options& options) {
   const CheckReport report = {.title = std::filesystem::path(scene.file).filename().string(),
                               .cone = cone.image.image,
                               .path = path.image,
-                              .metrics = compare(cone.image.image, path.image, !glow, exposure),
+                              .metrics = compare(cone.image.image, path.image, indirect, exposure),
                               .exposure = exposure,
                               .budget = options.budget,
                               .cone_result = to_json(cone),

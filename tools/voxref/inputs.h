@@ -14,8 +14,7 @@ Scene load_scene(const SceneOptions& options, Terminal& terminal);
 View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_pixel);
 /// The most memory that a renderer holds at once, from its image's first pixel to the written file.
 size_t path_bytes_per_pixel(const PathOptions& options);
-/// The cone tracer's image of 23 float32 channels, and its copy in the order of the file.
-constexpr size_t cone_image_bytes_per_pixel = 4 * 23;
+/// The image, and its copy in the order of the file.
 constexpr size_t cone_bytes_per_pixel = 2 * cone_image_bytes_per_pixel;
 /// The profile, then the file, then the assignments. @throws Error with the file or flag, and the parameter
 Settings make_settings(const SettingsOptions& options);

@@ -22,8 +22,9 @@ nlohmann::json to_json(const PathResult& result) {
 }
 
 nlohmann::json to_json(const StageSeconds& seconds) {
-  return {{"voxelize", seconds.voxelize}, {"shade", seconds.shade},           {"mipmap", seconds.mipmap},
-          {"bounce", seconds.bounce},     {"cone_trace", seconds.cone_trace}, {"total", seconds.total}};
+  return {{"voxelize", seconds.voxelize}, {"shade", seconds.shade},     {"mipmap", seconds.mipmap},
+          {"bounce", seconds.bounce},     {"prepare", seconds.prepare}, {"cone_trace", seconds.cone_trace},
+          {"total", seconds.total}};
 }
 
 nlohmann::json to_json(const ConeTraceResult& result) {

@@ -28,16 +28,16 @@ struct Options {
 };
 
 std::string sentence(const PlannedSetting& setting) {
-  return fmt::format("error {:.1f} % +- {:.1f}, about {:.2g} s and {}: {}", 100 * setting.error,
-                     100 * setting.error_bar, setting.seconds, byte_count(setting.bytes),
+  return fmt::format("error {:.1f} % +- {:.1f}, about {:.2g} s and {}: {}", 100 * setting.rel_error,
+                     100 * setting.rel_error_stderr, setting.seconds, byte_count(setting.bytes),
                      assignments(setting.settings));
 }
 
 nlohmann::json describe(const std::optional<PlannedSetting>& setting) {
   if (!setting) return nullptr;
   return {{"settings", config(setting->settings)},
-          {"rel_error", setting->error},
-          {"rel_error_stderr", setting->error_bar},
+          {"rel_error", setting->rel_error},
+          {"rel_error_stderr", setting->rel_error_stderr},
           {"seconds", setting->seconds},
           {"bytes", setting->bytes},
           {"assignments", assignments(setting->settings)}};

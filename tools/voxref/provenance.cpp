@@ -1,5 +1,6 @@
 #include "provenance.h"
 
+#include <fstream>
 #include <glm/trigonometric.hpp>
 
 #include "json.h"
@@ -9,15 +10,6 @@ namespace voxref {
 namespace {
 
 std::string command_line;  // set once, by main, before anything else runs
-
-/// Quoted for a shell where it needs to be, so that the line can be run again.
-std::string quoted(const std::string& argument) {
-  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
-  std::string result = "'";
-  for (const char c : argument) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
 
 template <class Value>
 nlohmann::json given(const std::optional<Value>& value) {
@@ -44,9 +36,25 @@ nlohmann::json describe(const View& view) {
 
 std::string version() { return VOXREF_VERSION; }
 
+std::string shell_word(const std::string& argument) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
+  std::string result = "'";
+  for (const char c : argument) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (const size_t colon = line.find(": "); line.starts_with("model name") && colon != std::string::npos)
+      return line.substr(colon + 2);
+  return "unknown processor";
+}
+
 void set_command_line(int argc, char* argv[]) {
   command_line = "voxref";
-  for (int i = 1; i < argc; ++i) command_line += " " + quoted(argv[i]);
+  for (int i = 1; i < argc; ++i) command_line += " " + shell_word(argv[i]);
 }
 
 nlohmann::json program_provenance() {

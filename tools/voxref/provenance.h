@@ -12,6 +12,12 @@ namespace voxref {
 /// The program's version and that of the libraries it was built with.
 std::string version();
 
+/// Quoted for a shell where it needs to be, so that a command line can be run again.
+std::string shell_word(const std::string& argument);
+
+/// The processor's name, as the system tells it.
+std::string cpu_model();
+
 /// Remembers how the program was called.
 void set_command_line(int argc, char* argv[]);
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "commands.h"
@@ -12,6 +14,7 @@
 #include "inputs.h"
 #include "parallel.h"
 #include "provenance.h"
+#include "study/gnuplot.h"
 #include "study/study_report.h"
 #include "terminal.h"
 
@@ -30,8 +33,8 @@ struct Options {
 std::string machine() {
   utsname system{};
   uname(&system);
-  return fmt::format("{} {}, {} threads of {} cores", system.sysname, system.machine, thread_count(),
-                     std::thread::hardware_concurrency());
+  return fmt::format("{}, {} threads of {} cores, {} {}", cpu_model(), thread_count(),
+                     std::thread::hardware_concurrency(), system.sysname, system.machine);
 }
 
 /// Where assets/ lies: VOXREF_ASSETS, else ../shared beside the current folder; empty: nowhere.
@@ -43,10 +46,13 @@ std::filesystem::path find_assets() {
   return {};
 }
 
+/// What files of a scene's study are called after.
+std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
 StudyScene load(const std::string& file, Terminal& terminal) {
   SceneOptions options;
   options.file = file;
-  StudyScene result{std::filesystem::path(file).stem().string(), load_scene(options, terminal), {}};
+  StudyScene result{scene_name(file), load_scene(options, terminal), {}};
   result.view.camera = result.scene.cameras.empty() ? framing_camera(result.scene) : result.scene.cameras.front();
   return result;
 }
@@ -61,6 +67,32 @@ std::vector<Study> chosen(const std::string& name) {
   if (name.empty()) throw Error("NAME", "needed, but not given; there are: " + names + "all");
   if (found.empty()) throw Error("'" + name + "'", "is no study; there are: " + names + "all");
   return found;
+}
+
+/// What was asked for must be the studies' to use, and files of theirs must not meet.
+void check(const Options& options, std::span<const Study> wanted) {
+  for (const Study& study : wanted)
+    if (!options.scenes.empty() && !study.takes_scenes)
+      throw Error("SCENE", "is not for " + study.name + ", which has scenes of its own");
+  const bool shows_image =
+      std::any_of(wanted.begin(), wanted.end(), [](const Study& study) { return study.takes_gpu_image; });
+  if (!options.gpu_image.empty() && !shows_image) throw Error("--gpu", "is for ladder alone");
+  if (!options.gpu_image.empty() && options.scenes.size() != 1)
+    throw Error("--gpu", "needs the one scene that the image shows");
+  std::set<std::string> names;
+  for (const std::string& scene : options.scenes)
+    if (!names.insert(scene_name(scene)).second)
+      throw Error(scene, "another SCENE has this name, and files are called after it");
+}
+
+/// The line that repeats one study of those that were asked for.
+std::string command(const Options& options, const Study& study) {
+  std::string line = "voxref study " + study.name;
+  for (const std::string& scene : options.scenes) line += " " + shell_word(scene);
+  line += " -o " + shell_word(options.output);
+  if (options.quick) line += " --quick";
+  if (study.takes_gpu_image && !options.gpu_image.empty()) line += " --gpu " + shell_word(options.gpu_image);
+  return line;
 }
 
 int list_studies(const Options& options) {
@@ -78,6 +110,7 @@ int run_study(const Options& options) {
   if (options.list) return list_studies(options);
   const std::vector<Study> wanted = chosen(options.name);
   if (options.output.empty()) throw Error("-o", "needed, but not given");
+  check(options, wanted);
   require_folder(options.output);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
@@ -88,18 +121,21 @@ int run_study(const Options& options) {
   request.progress = terminal.progress();
   for (const std::string& file : options.scenes) request.scenes.push_back(load(file, terminal));
 
-  std::vector<StudyResult> results;
-  for (const Study& study : wanted) {
-    results.push_back(study.run(request));
-    for (const std::string& skipped : results.back().skipped) terminal.warn("voxref: skipped: " + skipped);
-    for (const Section& section : results.back().sections)
-      terminal.say(fmt::format("{:<10} {}: {:.1f} s", study.name, section.title, section.seconds));
-  }
   const auto gnuplot = find_gnuplot();
   if (!gnuplot) terminal.warn("voxref: warning: gnuplot is not installed (Debian: gnuplot-nox): data without charts");
   nlohmann::json origin = program_provenance();
   origin["machine"] = machine();
-  write_studies(options.output, results, origin, gnuplot);
+  std::vector<StudyResult> results;
+  for (const Study& study : wanted) {
+    StudyResult& result = results.emplace_back(study.run(request));
+    result.command = command(options, study);
+    for (const std::string& skipped : result.skipped) terminal.warn("voxref: skipped: " + skipped);
+    for (const Section& section : result.sections)
+      terminal.say(fmt::format("{:<10} {}: {:.1f} s", study.name, section.title, section.seconds));
+    // After each: what stops the next takes nothing of this one away.
+    write_study(options.output, result, origin, gnuplot);
+    write_report(options.output, results, origin, gnuplot.has_value());
+  }
   terminal.say("report     " + (std::filesystem::path(options.output) / "report.html").string());
   terminal.result(study_result(results, origin));
   return exit_done;
@@ -111,7 +147,8 @@ void add_study(CLI::App& program, Run& run) {
   CLI::App* command = program.add_subcommand("study", "what the approximations cost and gain: data, charts, a page");
   const auto options = std::make_shared<Options>();
   command->add_option("NAME", options->name, "a study, or all")->type_name("");
-  command->add_option("SCENE", options->scenes, "glTF files in place of the study's own scenes")->type_name("");
+  command->add_option("SCENE", options->scenes, "glTF files in place of the own scenes of pareto and ladder")
+      ->type_name("");
   command->add_flag("--list", options->list, "says which studies there are");
   add_output_option(*command, options->output, "DIR", "folder for tables, charts, result.json and report.html");
   command->get_option("-o")->required(false);  // --list writes nothing
@@ -122,7 +159,7 @@ void add_study(CLI::App& program, Run& run) {
   command->footer(
       "The larger public scenes are looked for in VOXREF_ASSETS/assets, then in ../shared/assets. Charts need "
       "gnuplot.\n"
-      "Ctrl-C writes nothing and exits with 2.\n\n"
+      "Each study is written as it ends. Ctrl-C writes nothing of the running one and exits with 2.\n\n"
       "Example:\n  voxref study pareto scenes/cornell_box_point.glb -o out/pareto --quick");
   on_run(command, run, [options] { return run_study(*options); });
 }

@@ -43,9 +43,9 @@ void say(Terminal& terminal, const ConeTraceResult& result, Storage storage) {
   terminal.say(fmt::format("cone      {}x{}x{} grid, {} voxels occupied, {} bounces", result.grid.size.x,
                            result.grid.size.y, result.grid.size.z, result.voxels_occupied, result.bounces));
   terminal.say(
-      fmt::format("seconds   voxelize {:.2f}, shade {:.2f}, mipmap {:.2f}, bounce {:.2f}, cone trace {:.2f}, "
-                  "total {:.2f}",
-                  s.voxelize, s.shade, s.mipmap, s.bounce, s.cone_trace, s.total));
+      fmt::format("seconds   voxelize {:.2f}, shade {:.2f}, mipmap {:.2f}, bounce {:.2f}, prepare {:.2f}, "
+                  "cone trace {:.2f}, total {:.2f}",
+                  s.voxelize, s.shade, s.mipmap, s.bounce, s.prepare, s.cone_trace, s.total));
   std::string memory = "memory   ";
   for (const auto& [volume, bytes] : result.bytes) memory += fmt::format(" {} {},", volume, byte_count(bytes));
   memory.pop_back();  // the last comma

@@ -1,0 +1,91 @@
+#include "study/deviation.h"
+
+#include <cmath>
+#include <random>
+
+#include "catch.h"
+#include "compare/metrics.h"
+#include "compare/statistics.h"
+#include "make_scenes/builders.h"
+#include "pipeline.h"
+#include "reference/path.h"
+#include "study/study_scenes.h"
+
+using namespace voxref;
+
+TEST_CASE("A deviation is rel_error of cli.md, and its error bar that of independent renderings", "[study]") {
+  const StudyScene scene = cornell_point_scene();
+  const Caster caster(scene.scene);
+  const View view = sized(scene.view, 16);
+  Settings settings;
+  settings.grid.resolution = 20;
+  settings.bounce.count = 1;
+  const Image cone = cone_trace(scene.scene, caster, view, settings).image.image;
+  std::vector<double> errors;
+  double bar = 0.0;
+  constexpr int seeds = 24;
+  for (int seed = 0; seed < seeds; ++seed) {
+    PathOptions options;
+    options.spp = 16;
+    options.seed = static_cast<uint64_t>(seed);
+    const Image path = path_trace(scene.scene, caster, view, options).image;
+    const Deviation d = deviation(measured_cone(cone, true), measured_path(path, true));
+    const Metrics metrics = compare(cone, path, true, 0.0f);
+    CHECK(d.rel_error() == Approx(metrics.rel_error).epsilon(1e-6));
+    CHECK(d.bias + 1.0 == Approx(metrics.mean_ratio).epsilon(1e-6));
+    errors.push_back(d.rel_error());
+    bar += d.rel_error_stderr() / seeds;
+  }
+  // The scatter of 24 values is known to 15 %; the bar leaves out what moves the mean below the fraction.
+  const double scatter = estimate(errors).error * std::sqrt(double(seeds));
+  CHECK(bar / scatter == Approx(1.0).margin(0.5));
+}
+
+TEST_CASE("The error of a mean square is that of many draws, with more noise than signal too", "[study]") {
+  constexpr size_t pixels = 400, draws = 2000;
+  std::mt19937 random(1);
+  for (const double noise : {0.2, 1.0, 3.0}) {
+    std::vector<double> values, errors;
+    for (size_t k = 0; k < draws; ++k) {
+      std::vector<double> d(pixels);
+      for (size_t i = 0; i < pixels; ++i) d[i] = std::normal_distribution<>(i % 2 ? 1.0 : -1.0, noise)(random);
+      const MeanSquare found = mean_square(d, std::vector<double>(pixels, noise * noise));
+      values.push_back(found.value);
+      errors.push_back(found.error);
+    }
+    const Estimate value = estimate(values);
+    CAPTURE(noise, value.mean, value.error);
+    CHECK(std::abs(value.mean - 1.0) < 4.0 * value.error);  // true differences are 1 or -1
+    // The scatter of 2000 draws is known to 1.6 %.
+    CHECK(mean(errors) == Approx(value.error * std::sqrt(double(draws))).epsilon(0.06));
+  }
+}
+
+TEST_CASE("A deviation that noise hides has an upper limit, and black against black none", "[study]") {
+  // Noise of 1 in both pixels and a difference of 0.1: less than the noise, so that the error is clamped to 0.
+  const Measured truth{{10.0, 10.0}, {1.0, 1.0}}, image{{10.1, 10.1}, {0.0, 0.0}};
+  const Deviation hidden = deviation(image, truth);
+  CHECK(hidden.rel_error() == 0.0);
+  CHECK(hidden.square.value < 0.0);
+  CHECK(hidden.square.root(3.0) > 0.0);
+  const Measured black{{0.0, 0.0}, {0.0, 0.0}};
+  CHECK(deviation(black, black).rel_error() == 0.0);
+  CHECK(deviation(black, black).bias == 0.0);
+  CHECK(std::isinf(deviation(image, black).rel_error()));
+}
+
+TEST_CASE("What has no indirect light is compared as a whole", "[study]") {
+  const StudyScene box = cornell_point_scene();
+  const Scene plane = point_light_over_plane();
+  PathOptions path;
+  path.spp = 16;
+  const auto traced = [&](const Scene& scene, const View& view) {
+    return path_trace(scene, Caster(scene), view, path).image;
+  };
+  View view;
+  view.camera = plane.cameras.at(0);
+  const View small = sized(view, 8), of_box = sized(box.view, 8);
+  CHECK(compares_indirect(plane, small));
+  CHECK(!has_indirect_to_compare(plane, small, traced(plane, small)));
+  CHECK(has_indirect_to_compare(box.scene, of_box, traced(box.scene, of_box)));
+}

@@ -1,0 +1,15 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "study/chart.h"
+
+namespace voxref {
+
+/// Where the plotting program is; none where it is not installed (Debian: gnuplot-nox).
+std::optional<std::filesystem::path> find_gnuplot();
+
+/// Writes NAME.gnuplot, NAME.svg and NAME.png into the folder. @throws Error with gnuplot's message when it fails
+void draw(const Chart& chart, const std::filesystem::path& gnuplot, const std::filesystem::path& folder);
+
+}  // namespace voxref
