@@ -18,7 +18,8 @@ inline double incomplete_beta(double x, double p, double q) {
   if (x > (p + 1.0) / (p + q + 2.0)) return 1.0 - incomplete_beta(1.0 - x, q, p);
   double fraction = 1.0;
   for (int n = 50 + static_cast<int>(5.0 * std::sqrt(std::max(p, q))); n >= 1; --n) {
-    const double m = n / 2;
+    const int half = n / 2;
+    const double m = half;
     const double term = n % 2 ? -(p + m) * (p + q + m) * x / ((p + 2.0 * m) * (p + 2.0 * m + 1.0))
                               : m * (q - m) * x / ((p + 2.0 * m - 1.0) * (p + 2.0 * m));
     fraction = 1.0 + term / fraction;

@@ -82,12 +82,14 @@ Medium edge_medium(int first_bright) {
 /// Standard deviation of the edge's image, voxels: of the derivative of what a cone sees that is moved across.
 double edge_width(const Medium& medium, int edge, float tangent) {
   // The coarser of two levels has texels of up to 2 d; their average and interpolation reach 1.5 texels to each side.
-  const float reach = 3.0f * std::max(1.0f, 2.0f * tangent * edge_distance), step = reach / 64.0f;
+  constexpr int places = 64;  // to either side
+  const float reach = 3.0f * std::max(1.0f, 2.0f * tangent * edge_distance), step = reach / places;
   double total = 0.0, first = 0.0, second = 0.0, before = 0.0;
-  for (float u = -reach; u <= reach; u += step) {
+  for (int i = -places; i <= places; ++i) {
+    const float u = float(i) * step;
     const glm::vec3 origin(0.5f * edge_side - edge_distance, float(edge) + u, 0.5f * edge_side + 0.5f);
     const auto seen = double(march(medium, origin, {1.0f, 0.0f, 0.0f}, tangent, {}, {}).radiance.r);
-    if (u > -reach) {
+    if (i > -places) {
       const double share = seen - before, middle = double(u) - 0.5 * double(step);
       total += share;
       first += share * middle;

@@ -41,7 +41,8 @@ Failure flicker_of(const std::string& name, const std::string& title, const std:
                  {"amplitude / mean", true, {}, {}, {}},
                  {}};
   for (const auto& [cones, ratios] : runs) {
-    Series along{fmt::format("{} cones", cones), ChartStyle::line_points, {}}, lines = along;
+    const std::string title_of_run = fmt::format("{} cones", cones);
+    Series along{title_of_run, ChartStyle::line_points, {}}, lines{title_of_run, ChartStyle::line_points, {}};
     for (size_t i = 0; i < ratios.size(); ++i) {
       const double shift = double(i * periods) / double(ratios.size());
       failure.table.add({double(cones), shift, ratios[i]});

@@ -97,13 +97,15 @@ struct Approach {
 
 Approach approach(float step) {
   constexpr int side = 64;
-  constexpr float tangent = 0.5f, near = 6.0f, far = 24.0f, apart = 0.25f, unit = 2.0f;
+  constexpr float tangent = 0.5f, nearest = 6.0f, apart = 0.25f, unit = 2.0f;
+  constexpr int places = 73;  // to 24 voxels
   const Pyramid pyramid = wall_pyramid(side, 1, 1.0f);
   const Occupancy occupied(pyramid);
   const Medium medium = make_medium(wall_pyramid(side, 1, 1.0f));
   const ConeSteps steps = cone_steps(tangent, {unit, step, float(side), static_cast<int>(pyramid.levels.size()), 0.0f});
   Approach result;
-  for (float distance = near; distance <= far; distance += apart) {
+  for (int i = 0; i < places; ++i) {
+    const float distance = nearest + float(i) * apart;
     const glm::vec3 origin(0.5f * side + 0.5f - distance, 0.5f * side, 0.5f * side), direction(1.0f, 0.0f, 0.0f);
     result.distances.push_back(double(distance));
     result.extinction.push_back(double(march(medium, origin, direction, tangent, {}, {.step = step}).radiance.r));

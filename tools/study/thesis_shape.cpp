@@ -106,7 +106,9 @@ std::string Shape::summary(std::span<const ShapeReason> reasons) const {
     if (judgement == "smaller") v.smaller.push_back(1.0 / factor);
   }
   std::string text;
-  for (const auto& [name, v] : all) {
+  for (const auto& entry : all) {
+    const std::string& name = entry.first;
+    const Verdicts& v = entry.second;
     text += fmt::format("{}{}: {} of {} ratios agree with the published ones within a factor of {:g}",
                         text.empty() ? "" : "\n\n", name, v.agree, v.compared, tolerance);
     if (v.unsure > 0) text += fmt::format(", {} may or may not, by their spread", v.unsure);
