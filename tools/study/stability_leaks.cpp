@@ -63,6 +63,7 @@ void add_pair(Chart& chart, const Table& table, const std::string& x, const std:
               const std::pair<std::string, double>& where) {
   chart.series.push_back(curve(table, x, "directional", "as published, " + label, ChartStyle::points, where));
   chart.series.push_back(curve(table, x, "directional_theory", "theory, " + label, ChartStyle::dashes, where));
+  chart.series.back().color_of = "as published, " + label;
 }
 
 }  // namespace
@@ -127,6 +128,7 @@ Failure leak_by_level() {
     angles.series.push_back(curve(by_angle, "angle", "directional", fmt::format("as published, level {}", level),
                                   ChartStyle::points, {"level", level}));
     angles.series.push_back(theory_by_angle(level, fmt::format("theory, level {}", level)));
+    angles.series.back().color_of = fmt::format("as published, level {}", level);
   }
   angles.series.push_back(
       curve(by_angle, "angle", "extinction", "extinction, level 4", ChartStyle::line_points, {"level", 4}));

@@ -139,6 +139,7 @@ std::vector<Series> shape_series(const Table& shape, const std::string& scene, c
     ours.points.push_back(chart_point(x, shape.number(i, "ratio"), "", shape.number(i, "ratio_error")));
     published.points.push_back(chart_point(x, shape.number(i, "ratio_published")));
   }
+  published.color_of = title;
   return {std::move(ours), std::move(published)};
 }
 
