@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "stages.h"
+#include "voxel/npy.h"
 
 namespace voxref {
 
@@ -10,50 +11,98 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is compared, and what has been found so far.
-struct Work {
-  const VolumeFolder& from;
-  const Scene& scene;
-  const Settings& settings;
-  const VolumeLimits& limits;
-  const Progress& progress;
-  FolderDifference result;
-
-  bool has_stage(const std::string& stage) const {
-    return std::ranges::any_of(from.entries(), [&](const VolumeEntry& e) { return e.stage == stage; });
-  }
-  /// Compares the volumes of one stage with those in `recomputed`.
-  void compare(const std::string& stage, const fs::path& recomputed);
-  VolumeDifference within_envelope(const VolumeEntry& entry, const VolumeEntry& other,
-                                   const fs::path& recomputed) const;
-};
-
 bool averages_fragments(const Settings& settings) {
   return settings.voxelize.method == VoxelizeMethod::raster && settings.storage == Storage::unorm8;
 }
 
-VolumeDifference Work::within_envelope(const VolumeEntry& entry, const VolumeEntry& other,
-                                       const fs::path& recomputed) const {
-  const TexelEnvelope envelope =
-      texel_envelope(raster_envelopes(scene, with_box_center(from.grid(), scene.bounds(), settings.grid),
-                                      settings.voxelize.static_wins, progress),
-                     entry.name);
-  ArrayFile a = open_volume(from.folder(), entry), b = open_volume(recomputed, other);
-  return diff_volumes(entry, a, b, limits.tolerance, envelope, progress);
+/// What is compared, and what has been found so far.
+class Recomputation {
+ public:
+  Recomputation(const VolumeFolder& from, const Scene& scene, const Settings& settings, const VolumeLimits& limits,
+                const Progress& progress)
+      : from_(from), scene_(scene), settings_(settings), progress_(progress) {
+    result_.limits = limits;
+  }
+
+  bool has_volume_of(const std::string& stage) const {
+    return std::ranges::any_of(from_.entries(),
+                               [&](const VolumeEntry& entry) { return stage_making(entry.name) == stage; });
+  }
+  /// Whether some, but not all, of the levels are there that the bounce gathers from.
+  bool lacks_levels() const;
+  /// Compares the volumes that a stage makes with those in `recomputed`.
+  void compare(const std::string& stage, const fs::path& recomputed);
+  /// Lists the volumes of a stage that could not be run. @param why the stage needs what the folder lacks
+  void leave_out(const std::string& stage, const std::string& why);
+  FolderDifference conclude();
+
+ private:
+  VolumeDifference compared(const VolumeEntry& entry, const VolumeEntry& other, const fs::path& recomputed);
+  TexelEnvelope envelope_of(const std::string& volume);
+
+  const VolumeFolder& from_;
+  const Scene& scene_;
+  const Settings& settings_;
+  const Progress& progress_;
+  FolderDifference result_;
+  std::shared_ptr<const std::vector<VoxelEnvelope>> envelopes_;  ///< once needed; null: not yet
+};
+
+bool Recomputation::lacks_levels() const {
+  const glm::ivec3 size = from_.grid().size;
+  size_t present = 0, all = 0;
+  for (size_t level = 0; (1 << level) < std::max({size.x, size.y, size.z}); ++level)
+    for (size_t face = 0; face < face_names.size(); ++face, ++all) present += from_.has(aniso_name(face, level, false));
+  return present > 0 && present < all;
 }
 
-void Work::compare(const std::string& stage, const fs::path& recomputed) {
+TexelEnvelope Recomputation::envelope_of(const std::string& volume) {
+  if (!envelopes_)
+    envelopes_ = std::make_shared<const std::vector<VoxelEnvelope>>(
+        raster_envelopes(scene_, with_box_center(from_.grid(), scene_.bounds(), settings_.grid),
+                         settings_.voxelize.static_wins, progress_));
+  return texel_envelope(envelopes_, volume);
+}
+
+VolumeDifference Recomputation::compared(const VolumeEntry& entry, const VolumeEntry& other,
+                                         const fs::path& recomputed) {
+  const auto diff = [&](const TexelEnvelope& envelope) {
+    return diff_volumes(from_.folder(), entry, recomputed, other, result_.limits.tolerance, envelope, progress_);
+  };
+  VolumeDifference difference = diff({});
+  const bool averaged = entry.name == "albedo" || entry.name == "normal" || entry.name == "emission";
+  if (!averaged || !averages_fragments(settings_) || !difference.differs(result_.limits)) return difference;
+  return diff(envelope_of(entry.name));
+}
+
+void Recomputation::compare(const std::string& stage, const fs::path& recomputed) {
   const VolumeIndex index = read_volume_index(recomputed);
-  for (const VolumeEntry& entry : from.entries()) {
-    const VolumeEntry* other = index.find(entry.name);
-    if (entry.stage != stage || !other) continue;
-    ArrayFile a = open_volume(from.folder(), entry), b = open_volume(recomputed, *other);
-    VolumeDifference difference = diff_volumes(entry, a, b, limits.tolerance, {}, progress);
-    const bool averaged = entry.name == "albedo" || entry.name == "normal" || entry.name == "emission";
-    if (averaged && averages_fragments(settings) && difference.differs(limits))
-      difference = within_envelope(entry, *other, recomputed);
-    result.volumes.push_back(std::move(difference));
+  for (const VolumeEntry& entry : from_.entries()) {
+    if (stage_making(entry.name) != stage) continue;
+    if (const VolumeEntry* other = index.find(entry.name)) {
+      result_.volumes.push_back(compared(entry, *other, recomputed));
+    } else if (entry.name == "emission") {  // of a scene without, voxref writes none: its values are 0
+      VolumeEntry dark = entry;
+      dark.file = "emission.npy";
+      dark.mip = 0;
+      write_npy(recomputed / dark.file, dark.type, dark.shape, [](size_t, std::span<float>) {});
+      result_.volumes.push_back(compared(entry, dark, recomputed));
+    } else {
+      result_.volumes.push_back(not_compared(entry, "voxref makes no such volume of this grid with these settings"));
+      result_.volumes.back().missing = entry.face.empty();  // a level too many is a mistake
+    }
   }
+}
+
+void Recomputation::leave_out(const std::string& stage, const std::string& why) {
+  for (const VolumeEntry& entry : from_.entries())
+    if (stage_making(entry.name) == stage) result_.volumes.push_back(not_compared(entry, why));
+}
+
+FolderDifference Recomputation::conclude() {
+  leave_out("", "made by no stage that voxref knows");
+  result_.conclude(index_file(from_.folder()).string());
+  return std::move(result_);
 }
 
 }  // namespace
@@ -62,27 +111,36 @@ FolderDifference recompute(const fs::path& under_test, const Scene& scene, const
                            const glm::vec3& background, const VolumeLimits& limits, const fs::path& work,
                            const Progress& progress) {
   const VolumeFolder from(under_test);
-  Work stages{from, scene, settings, limits, progress, {}};
-  stages.result.limits = limits;
-  if (stages.has_stage("voxelize")) {
+  Recomputation stages(from, scene, settings, limits, progress);
+  const bool surfaces = from.has("albedo") && from.has("normal");
+  const bool direct = from.has(radiance_name(false)), bounced = from.has(radiance_name(true));
+  const char* unlit = "not judged: the stage that makes it needs albedo and normal, which are not both there";
+  if (stages.has_volume_of("voxelize")) {
     run_voxelize(scene, from.grid(), settings, work / "voxelize", progress);
     stages.compare("voxelize", work / "voxelize");
   }
-  if (stages.has_stage("shade") && from.has("albedo")) {
+  if (!surfaces) {
+    stages.leave_out("shade", unlit);
+  } else if (stages.has_volume_of("shade")) {
     run_shade(from, scene, settings, work / "shade", progress);
     stages.compare("shade", work / "shade");
   }
-  if (from.has(radiance_name(false)) || from.has(radiance_name(true))) {
-    run_mipmap(from, settings, work / "mipmap", progress);
-    stages.compare("mipmap", work / "mipmap");
-  }
-  if (stages.has_stage("bounce") && from.has("albedo") && from.has(radiance_name(false))) {
+  if (direct || bounced) run_mipmap(from, settings, work / "mipmap", progress);
+  const char* unfiltered = "not judged: what it was filtered from is not there";
+  direct ? stages.compare("mipmap", work / "mipmap") : stages.leave_out("mipmap", unfiltered);
+  if (!surfaces) {
+    stages.leave_out("bounce", unlit);
+  } else if (!direct) {
+    stages.leave_out("bounce", "not judged: there is no radiance to gather");
+  } else if (stages.lacks_levels()) {
+    stages.leave_out("bounce", "not judged: of the levels that were gathered from some are not there");
+  } else if (bounced) {
     run_bounce(from, settings, background, work / "bounce", progress);
     stages.compare("bounce", work / "bounce");
-    stages.compare("mipmap after bounce", work / "mipmap");
   }
-  if (stages.result.first_divergence()) stages.result.verdict = Verdict::different;
-  return stages.result;
+  bounced ? stages.compare("mipmap after bounce", work / "mipmap")
+          : stages.leave_out("mipmap after bounce", unfiltered);
+  return stages.conclude();
 }
 
 }  // namespace voxref

@@ -14,10 +14,13 @@ namespace voxref {
 /// scene in the folder's grid, radiance against those, aniso_* against radiance, radiance_bounce against all of these,
 /// aniso_bounce_* against radiance_bounce.
 ///
-/// Volumes of averaged fragments (voxelize.average running_floor8) are accepted in any order of averaging.
-/// @param under_test a folder of volumes, finite; what it lacks is not judged
-/// @param work an existing folder for voxref's own volumes
+/// A volume's stage follows from its name. Volumes of averaged fragments (voxelize.average running_floor8) are accepted
+/// in any order of averaging. A level that voxref does not make differs; emission that it does not make is 0; other
+/// volumes that it does not make, and those whose stage's input is not there, are listed as missing.
+/// @param under_test a folder of volumes, finite
+/// @param work an existing folder for voxref's own volumes, to which the result refers
 /// @return the volumes of `under_test` as the first side, voxref's as the second
+/// @throws Error where nothing could be compared
 FolderDifference recompute(const std::filesystem::path& under_test, const Scene& scene, const Settings& settings,
                            const glm::vec3& background, const VolumeLimits& limits, const std::filesystem::path& work,
                            const Progress& progress = {});

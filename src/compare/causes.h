@@ -7,6 +7,7 @@
 #include "compare/difference.h"
 #include "compare/field.h"
 #include "compare/mistakes.h"
+#include "progress.h"
 
 namespace voxref {
 
@@ -21,7 +22,8 @@ struct Cause {
 /// @param vanishes the judge: whether nothing that counts is different any more once this mistake is undone
 /// @return those that explain it best, the simplest first; empty: none of them does
 std::vector<Cause> likely_causes(const Field& a, const Field& b,
-                                 const std::function<bool(const Mistake& mistake)>& vanishes);
+                                 const std::function<bool(const Mistake& mistake)>& vanishes,
+                                 const Progress& progress = {});
 
 /// A judge for arrays without noise: 99.9 % of the places agree, each channel within the tolerance.
 bool explains(const Mistake& mistake, const Field& a, const Field& b, const Tolerance& tolerance);

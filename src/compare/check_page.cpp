@@ -95,25 +95,24 @@ std::string summary(const CheckReport& report) {
 
 std::string report_page(const CheckReport& report) {
   const std::optional<bool> within = within_budget(report);
-  return comparison_page(
-      {.command = "voxref check",
-       .title = report.title,
-       .verdict = verdict(report),
-       .tone = !within   ? PageTone::open
-               : *within ? PageTone::good
-                         : PageTone::bad,
-       .summary = summary(report),
-       .unit = "Radiance in W/(sr m²), values here to about 0.4 %, exact in the EXR files beside this page.",
-       .name_a = "cone",
-       .name_b = "path",
-       .a = report.cone,
-       .b = report.path,
-       .exposure = report.exposure,
-       .layers = {{"total", {""}, {""}},
-                  {"indirect", {"diffuse", "specular"}, {"indirect"}},
-                  {"direct", {"direct"}, {"direct"}}},
-       .tables = {metric_table(report.metrics), time_table(report), byte_table(report)},
-       .provenance = report.provenance});
+  return comparison_page({.command = "voxref check",
+                          .title = report.title,
+                          .verdict = verdict(report),
+                          .tone = !within   ? PageTone::open
+                                  : *within ? PageTone::good
+                                            : PageTone::bad,
+                          .summary = summary(report),
+                          .unit = "Radiance in W/(sr m²), exact in the EXR files beside this page.",
+                          .name_a = "cone",
+                          .name_b = "path",
+                          .a = report.cone,
+                          .b = report.path,
+                          .exposure = report.exposure,
+                          .layers = {{"total", {""}, {""}},
+                                     {"indirect", {"diffuse", "specular"}, {"indirect"}},
+                                     {"direct", {"direct"}, {"direct"}}},
+                          .tables = {metric_table(report.metrics), time_table(report), byte_table(report)},
+                          .provenance = report.provenance});
 }
 
 }  // namespace voxref

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <map>
 #include <string>
 #include <string_view>
@@ -86,6 +88,19 @@ std::string provenance_rows(const nlohmann::json& provenance) {
   return html;
 }
 
+/// How far the page's numbers can be trusted.
+std::string precision(const ComparisonPage& page, const nlohmann::json& layers) {
+  const auto error = [](int bits) { return 100.0 * std::ldexp(1.0, -bits); };  // half a step of the smallest mantissa
+  int bits = 8, difference_bits = 8;
+  for (const nlohmann::json& layer : layers) {
+    bits = std::min(bits, layer["bits"].get<int>());
+    difference_bits = std::min(difference_bits, layer["difference_bits"].get<int>());
+  }
+  return fmt::format(
+      "On this page {} and {} are to {:.1g} % of a pixel's largest channel, {} − {} is to {:.1g} % of its own.",
+      page.name_a, page.name_b, error(bits), page.name_a, page.name_b, error(difference_bits));
+}
+
 }  // namespace
 
 std::string comparison_page(const ComparisonPage& page) {
@@ -102,7 +117,7 @@ std::string comparison_page(const ComparisonPage& page) {
                {"verdict", escape(page.verdict)},
                {"verdict_class", tone},
                {"summary", escape(page.summary)},
-               {"unit", escape(page.unit)},
+               {"unit", escape(page.unit + " " + precision(page, data["layers"]))},
                {"name_a", escape(page.name_a)},
                {"name_b", escape(page.name_b)},
                {"size", fmt::format("{} × {} pixels{}", page.a.width(), page.a.height(),

@@ -32,13 +32,14 @@ struct ComparisonPage {
   std::string name_a, name_b;     ///< of the images, short: "cone", "path"
   const Image &a, &b;             ///< of equal size
   float exposure = 0.0f;          ///< stops
-  std::vector<PageLayer> layers;  ///< those that an image lacks are left out
+  std::vector<PageLayer> layers;  ///< those that an image lacks are left out; one at least is in both
   std::vector<PageTable> tables;
   nlohmann::json provenance;  ///< object, shown key by key
 };
 
 /// An HTML page that opens from disk: no resource from elsewhere, below 3 MiB whatever the images' size (they are
-/// reduced by a whole factor, which the page states, when they have more than 512x512 pixels).
+/// reduced by a whole factor, which the page states, when they have more than 512x512 pixels or noise that does not
+/// compress).
 std::string comparison_page(const ComparisonPage& page);
 
 }  // namespace voxref

@@ -12,9 +12,9 @@ namespace voxref {
 namespace {
 
 size_t bin_of(double magnitude) {
-  if (magnitude < 1e-8) return 0;  // of first_decade: log10 of less may be minus infinity
-  const int decade = static_cast<int>(std::floor(std::log10(magnitude)));
-  return static_cast<size_t>(std::min(decade, Difference::last_decade) - Difference::first_decade) + 1;
+  static constexpr std::array<double, Difference::bins - 1> decades = {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2,
+                                                                       1e-1, 1.0,  1e1,  1e2,  1e3,  1e4};
+  return static_cast<size_t>(std::ranges::upper_bound(decades, magnitude) - decades.begin());
 }
 
 bool worse(const Mismatch& x, const Mismatch& y) { return std::abs(x.a - x.b) > std::abs(y.a - y.b); }
@@ -46,6 +46,7 @@ bool Tolerance::accepts(float a, float b) const {
 }
 
 double Difference::rmse() const { return std::sqrt(mean(sum_squares)); }
+double Difference::psnr() const { return 20.0 * std::log10(peak / rmse()); }
 
 void Difference::append(const Difference& other) {
   values += other.values;
@@ -58,6 +59,7 @@ void Difference::append(const Difference& other) {
   for (const Mismatch& mismatch : other.worst) note_worst(worst, mismatch);
   for (size_t i = 0; i < bins; ++i) histogram[i] += other.histogram[i];
   max_abs = std::max(max_abs, other.max_abs);
+  peak = std::max(peak, other.peak);
   sum_a += other.sum_a;
   sum_b += other.sum_b;
   sum_squares += other.sum_squares;
@@ -72,6 +74,7 @@ void compare_row(Difference& difference, std::span<const float> a, std::span<con
     if (a[i] == b[i] && std::isfinite(a[i])) {  // most values of most comparisons
       difference.sum_a += x;
       difference.sum_b += y;
+      difference.peak = std::max(difference.peak, std::abs(y));
       continue;
     }
     const auto place = static_cast<int>(i);
@@ -90,6 +93,7 @@ void compare_row(Difference& difference, std::span<const float> a, std::span<con
     }
     if (!finite) continue;
     const double magnitude = std::abs(x - y);
+    difference.peak = std::max(difference.peak, std::abs(y));
     difference.sum_a += x;
     difference.sum_b += y;
     difference.sum_squares += magnitude * magnitude;
@@ -99,6 +103,8 @@ void compare_row(Difference& difference, std::span<const float> a, std::span<con
     note_worst(difference.worst, mismatch);
   }
 }
+
+nlohmann::json finite_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
 
 nlohmann::json to_json(const Mismatch& m, bool volume) {
   nlohmann::json place =
@@ -119,6 +125,10 @@ nlohmann::json to_json(const Difference& difference, bool volume) {
                          {"worst_places", nlohmann::json::array()},
                          {"first", nullptr},
                          {"differing", {{"count", difference.differing}, {"fraction", difference.fraction()}}}};
+  if (volume) {
+    json["psnr"] = finite_or_null(difference.psnr());
+    json["psnr_formula"] = "20 log10(max |b| / rmse)";
+  }
   for (const Mismatch& mismatch : difference.worst) json["worst_places"].push_back(to_json(mismatch, volume));
   if (!difference.worst.empty()) json["worst"] = json["worst_places"][0];
   if (difference.first) json["first"] = to_json(*difference.first, volume);

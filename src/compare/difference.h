@@ -40,6 +40,7 @@ struct Difference {
   std::vector<Mismatch> worst;              ///< at most most_worst, those with the largest |a - b| first
   std::array<uint64_t, bins> histogram{};   ///< of |a - b|, see first_decade; equal values are in none
   double max_abs = 0.0;                     ///< |a - b|
+  double peak = 0.0;                        ///< |b|
   double sum_a = 0.0, sum_b = 0.0;
   double sum_squares = 0.0;   ///< (a - b)^2
   double sum_relative = 0.0;  ///< (a - b)^2 / (b^2 + 0.01)
@@ -48,6 +49,8 @@ struct Difference {
   double mean_signed() const { return mean(sum_a - sum_b); }
   double rmse() const;
   double relmse() const { return mean(sum_relative); }
+  /// 20 log10(peak / rmse), dB; infinite where all is equal, NaN where there is nothing but 0 to be equal to.
+  double psnr() const;
   double fraction() const { return values ? double(differing) / double(values) : 0.0; }
   double mean(double sum) const { return finite() ? sum / double(finite()) : 0.0; }
 
@@ -66,10 +69,13 @@ struct Row {
 void compare_row(Difference& difference, std::span<const float> a, std::span<const float> b, const Row& row,
                  const Tolerance& tolerance);
 
+/// JSON knows neither NaN nor infinity: null stands for both.
+nlohmann::json finite_or_null(double value);
 /// {place [x,y,z,channel] or [x,y,channel], a, b}; a value that is not finite is a string: "nan", "inf", "-inf".
 nlohmann::json to_json(const Mismatch& mismatch, bool volume);
 /// The keys of cli.md that are the same for images and volumes: nonfinite_a, nonfinite_b, first_nonfinite, max_abs,
-/// mean_signed, rmse, relmse, relmse_formula, worst, worst_places, first, differing, histogram.
+/// mean_signed, rmse, relmse, relmse_formula, worst, worst_places, first, differing, histogram; of volumes also psnr
+/// and psnr_formula, for it is no display's.
 nlohmann::json to_json(const Difference& difference, bool volume);
 
 }  // namespace voxref

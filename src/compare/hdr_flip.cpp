@@ -17,7 +17,8 @@ constexpr float scale = 0.6f;
 constexpr float a = 2.51f * scale * scale, b = 0.03f * scale, c = 2.43f * scale * scale, d = 0.59f * scale, e = 0.14f;
 
 glm::vec3 tone_mapped(const glm::vec3& radiance) {
-  const glm::vec3 x = glm::max(radiance, 0.0f);
+  constexpr float long_white = 1e9f;  // and far below where squares overflow, which would make NaN of a light
+  const glm::vec3 x = glm::clamp(radiance, 0.0f, long_white);
   return glm::clamp((x * (a * x + b)) / (x * (c * x + d) + e), 0.0f, 1.0f);
 }
 
@@ -49,10 +50,13 @@ FlipExposures flip_exposures(std::span<const glm::vec3> reference) {
 }
 
 std::vector<float> hdr_flip_map(int width, int height, std::span<const glm::vec3> reference,
-                                std::span<const glm::vec3> test, const FlipExposures& exposures) {
+                                std::span<const glm::vec3> test, const FlipExposures& exposures,
+                                const Progress& progress) {
   std::vector<float> largest(reference.size(), 0.0f);
   std::vector<glm::vec3> shown_reference(reference.size()), shown_test(test.size());
   for (int i = 0; i < exposures.count; ++i) {
+    progress.check();
+    progress("HDR-FLIP", static_cast<double>(i) / exposures.count);
     const float share = exposures.count > 1 ? static_cast<float>(i) / static_cast<float>(exposures.count - 1) : 0.0f;
     const float gain = std::exp2(exposures.start + share * (exposures.stop - exposures.start));
     std::transform(reference.begin(), reference.end(), shown_reference.begin(),

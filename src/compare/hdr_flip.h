@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "progress.h"
+
 namespace voxref {
 
 /// The exposures that HDR-FLIP looks at a picture with: stops, `count` of them at equal distances from start to stop.
@@ -19,6 +21,7 @@ FlipExposures flip_exposures(std::span<const glm::vec3> reference);
 /// Images": per pixel the largest LDR-FLIP (flip.h) over the exposures, after the tone mapper of ACES as Narkowicz 2015
 /// fitted it. @param reference, test width x height pixels, linear RGB, finite, of any range @return values in [0,1]
 std::vector<float> hdr_flip_map(int width, int height, std::span<const glm::vec3> reference,
-                                std::span<const glm::vec3> test, const FlipExposures& exposures);
+                                std::span<const glm::vec3> test, const FlipExposures& exposures,
+                                const Progress& progress = {});
 
 }  // namespace voxref

@@ -8,9 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "compare/image_causes.h"
+#include "compare/image_verdict.h"
 #include "compare/metrics.h"
 #include "error.h"
 #include "image/image_file.h"
+#include "image/planes.h"
 #include "parallel.h"
 
 namespace voxref {
@@ -48,10 +51,7 @@ void compare_values(ImageDiff& diff, const Image& a, const Image& b) {
     diff.all.append(diff.channels[c]);
   }
   const auto luminances = [&](const auto& planes, size_t y, std::span<float> row) {
-    for (size_t x = 0; x < width; ++x) {
-      const size_t i = y * width + x;
-      row[x] = luminance({planes[0][i], planes[1][i], planes[2][i]});
-    }
+    for (size_t x = 0; x < width; ++x) row[x] = luminance_at(planes, y * width + x);
   };
   diff.luminance = compare_planes(a, 0, diff.tolerance, [&](size_t y, std::span<float> row_a, std::span<float> row_b) {
     luminances(planes_a, y, row_a);
@@ -63,132 +63,33 @@ double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-PerceptualDifference perceptual_difference(const Image& a, const Image& b, float exposure) {
+PerceptualDifference perceptual_difference(const Image& a, const Image& b, float exposure, const Progress& progress) {
   PerceptualDifference result;
+  progress.check();
+  progress("SSIM and FLIP", 0.0);
   result.displayed = displayed_difference(a, b, exposure);
   const std::vector<glm::vec3> test = colors(a), reference = colors(b);
   result.exposures = flip_exposures(reference);
-  result.hdr_flip = mean(hdr_flip_map(a.width(), a.height(), reference, test, result.exposures));
+  result.hdr_flip = mean(hdr_flip_map(a.width(), a.height(), reference, test, result.exposures, progress));
+  progress.check();
+  progress("Yee", 0.0);
   result.yee_pixels = yee_difference(a, b, exposure);
   return result;
 }
 
-/// Both images with a mistake undone in the first; where that tells nothing both are the reference.
-struct Undone {
-  Image a, b;
-};
-Undone undo(const Mistake& mistake, const Image& a, const Image& b, const Field& field_a, const Field& field_b) {
-  Undone undone{Image(b.width(), b.height()), b};
-  undone.a.attributes = a.attributes;
-  undone.a.add_layer("");
-  for (const char* channel : {"stderr.R", "stderr.G", "stderr.B", "stderr.Y"})
-    if (a.has(channel)) undone.a.add(channel);
-  const auto to = undone.a.layer(""), reference = undone.b.layer("");
-  for (size_t i = 0; i < field_b.texel_count(); ++i) {
-    glm::vec4 value, expected;
-    const glm::ivec3 place = field_b.place(i);
-    const bool told = mistake.undo(field_a, field_b, place, value, expected);
-    if (!told) value = expected = field_b.texel(place);
-    for (int c = 0; c < 3; ++c) {
-      to[size_t(c)][i] = value[c];
-      reference[size_t(c)][i] = expected[c];
-    }
-    glm::ivec3 from;
-    if (!told || !mistake.placement->source(place, field_a.size, from)) continue;
-    // Errors are small: one of the value before is the difference that it makes after.
-    const size_t source = field_a.index(from);
-    const auto carry = [&](const char* channel, size_t c) {
-      if (!a.has(channel)) return;
-      const glm::vec4 stored = field_a.texel(from);
-      const float error = a.channel(channel)[source];
-      const glm::vec4 moved = mistake.recoding->undo(stored + glm::vec4(glm::vec3(error), 0.0f));
-      undone.a.channel(channel)[i] = std::abs(moved[int(c)] - value[int(c)]);
-    };
-    carry("stderr.R", 0);
-    carry("stderr.G", 1);
-    carry("stderr.B", 2);
-    carry("stderr.Y", 1);
-  }
-  return undone;
-}
-
-std::vector<Cause> search_causes(const ImageDiff& diff, const Image& a, const Image& b, const NoiseOptions& options) {
-  const Field field_a = field_of(a), field_b = field_of(b);
-  // What an 8-bit file rounds away, and ten times the usual tolerance: a cause must explain, not reproduce.
-  const Tolerance loose{10.0 * diff.tolerance.absolute + 1.0 / 255.0, 10.0 * diff.tolerance.relative};
-  return likely_causes(field_a, field_b, [&](const Mistake& mistake) {
-    if (!diff.noise) return explains(mistake, field_a, field_b, loose);
-    const Undone undone = undo(mistake, a, b, field_a, field_b);
-    return judge_noise(undone.a, undone.b, options).verdict != Verdict::different;
-  });
-}
-
-/// Adds a reason for every metric that is over its limit. NaN is over every limit.
-void hold_against_limits(ImageDiff& diff, const ImageLimits& limits) {
-  constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-  const auto over = [&](const char* name, double value, const std::optional<double>& limit, bool at_least) {
-    if (!limit || (at_least ? value >= *limit : value <= *limit)) return;
-    diff.reasons.push_back(fmt::format("{} is {:.6g}, {} {:g}", name, value, at_least ? "below" : "above", *limit));
-  };
-  const auto& eye = diff.perceptual;
-  over("RMSE", diff.all.rmse(), limits.rmse, false);
-  over("relMSE", diff.all.relmse(), limits.relmse, false);
-  over("PSNR", diff.psnr, limits.psnr, true);
-  over("SSIM", eye ? eye->displayed.ssim : absent, limits.ssim, true);
-  over("FLIP", eye ? eye->displayed.flip : absent, limits.flip, false);
-  over("HDR-FLIP", eye ? eye->hdr_flip : absent, limits.hdr_flip, false);
-}
-
-std::string noise_reason(const NoiseVerdict& noise) {
-  if (noise.verdict == Verdict::too_noisy) {
-    const RegionTest& tile = *noise.noisiest_tile;
-    return fmt::format(
-        "{} of {} tiles and image means are too noisy to say: in the noisiest tile a difference of {:.3g} "
-        "({}) would have been found, {:.3g} matters",
-        noise.tiles_open, noise.tiles + noise.image.size(), tile.detectable, tile.channel, tile.margin);
-  }
-  for (const RegionTest& image : noise.image)
-    if (!image.equivalent() && std::abs(image.difference()) > image.detectable)
-      return fmt::format("the image's mean {} is {:.6g} instead of {:.6g}, {:.1f} standard errors off", image.channel,
-                         image.a.mean, image.b.mean,
-                         std::abs(image.difference()) / std::hypot(image.a.error, image.b.error));
-  if (noise.tiles_different > 0) {
-    const RegionTest& tile = *noise.worst_tile;
-    return fmt::format("{} of {} tiles differ; the tile at ({}, {}) has {} {:.6g} instead of {:.6g}",
-                       noise.tiles_different, noise.tiles, tile.x, tile.y, tile.channel, tile.a.mean, tile.b.mean);
-  }
-  if (noise.pixels_different > 0) {
-    const RegionTest& pixel = *noise.worst_pixel;
-    return fmt::format("{} single values differ; pixel ({}, {}) has {} {:.6g} instead of {:.6g}",
-                       noise.pixels_different, pixel.x, pixel.y, pixel.channel, pixel.a.mean, pixel.b.mean);
-  }
-  return "the image's mean differs";
-}
-
-void judge(ImageDiff& diff, const Image& a, const Image& b, const ImageLimits& limits) {
-  const Difference& all = diff.all;
-  if (all.nonfinite > 0) {
-    const Mismatch& first = *all.first_nonfinite;
-    diff.reasons.push_back(
-        fmt::format("{} values are NaN or infinite, the first at pixel ({}, {}) {}: {} instead of {}", all.nonfinite,
-                    first.at.x, first.at.y, "RGB"[first.channel], first.a, first.b));
-    diff.verdict = Verdict::different;
-    return;
-  }
-  hold_against_limits(diff, limits);
-  const bool by_values = !limits.by_metrics() || limits.tolerance;
-  if (by_values && all.fraction() > limits.fraction) {
-    const bool noisy = has_noise(a) || has_noise(b);
-    if (noisy && !limits.tolerance) {
-      diff.noise = judge_noise(a, b, limits.noise);
-      diff.verdict = diff.noise->verdict;
-      if (diff.verdict != Verdict::same) diff.reasons.push_back(noise_reason(*diff.noise));
-    } else {
-      diff.reasons.push_back(fmt::format("{} of {} values differ by more than {:g} + {:g} |b|", all.differing,
-                                         all.values, diff.tolerance.absolute, diff.tolerance.relative));
+/// Standard errors that are no numbers: statistics would take their pixels for exact.
+void find_nonfinite_errors(NonfiniteErrors& errors, const Image& image, const char* side, uint64_t& count) {
+  for (const char* channel : {"stderr.R", "stderr.G", "stderr.B", "stderr.Y"}) {
+    if (!image.has(channel)) continue;
+    const std::span<const float> plane = image.channel(channel);
+    for (size_t i = 0; i < plane.size(); ++i) {
+      if (std::isfinite(plane[i])) continue;
+      ++count;
+      const auto width = static_cast<size_t>(image.width());
+      if (errors.first.empty())
+        errors.first = fmt::format("{} pixel ({}, {}) {}: {}", side, i % width, i / width, channel, plane[i]);
     }
   }
-  if (!diff.reasons.empty() && diff.verdict != Verdict::too_noisy) diff.verdict = Verdict::different;
 }
 
 std::string attribute(const Image& image, const char* name) {
@@ -198,18 +99,21 @@ std::string attribute(const Image& image, const char* name) {
 
 }  // namespace
 
-ImageDiff diff_images(const Image& a, const Image& b, const ImageDiffOptions& options) {
+ImageDiff diff_images(const Image& a, const Image& b, const ImageDiffOptions& options, const Progress& progress) {
   if (a.width() != b.width() || a.height() != b.height())
     throw Error("comparison",
                 fmt::format("sizes differ: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height()));
   ImageDiff diff;
   diff.tolerance = options.limits.tolerance.value_or(Tolerance{});
+  progress.check();
   compare_values(diff, a, b);
+  find_nonfinite_errors(diff.errors, a, "A", diff.errors.a);
+  find_nonfinite_errors(diff.errors, b, "B", diff.errors.b);
   diff.exposure = options.exposure.value_or(auto_exposure(b));
   diff.psnr = std::numeric_limits<double>::quiet_NaN();
   if (diff.all.nonfinite == 0) {
     if (options.perceptual) {
-      diff.perceptual = perceptual_difference(a, b, diff.exposure);
+      diff.perceptual = perceptual_difference(a, b, diff.exposure, progress);
       diff.psnr = diff.perceptual->displayed.psnr;
     } else {
       diff.psnr = displayed_psnr(a, b, diff.exposure);
@@ -218,16 +122,20 @@ ImageDiff diff_images(const Image& a, const Image& b, const ImageDiffOptions& op
   diff.same_seed = has_noise(a) && has_noise(b) && !attribute(a, "voxref:seed").empty() &&
                    attribute(a, "voxref:seed") == attribute(b, "voxref:seed") &&
                    attribute(a, "voxref:scene_sha256") == attribute(b, "voxref:scene_sha256");
-  judge(diff, a, b, options.limits);
-  if (diff.verdict == Verdict::different && diff.all.nonfinite == 0)
-    diff.causes = search_causes(diff, a, b, options.limits.noise);
+  progress.check();
+  judge_images(diff, a, b, options.limits);
+  if (diff.verdict == Verdict::different && diff.all_finite())
+    diff.causes = image_causes(diff, a, b, options.limits.noise, progress);
   return diff;
 }
 
 nlohmann::json to_json(const ImageDiff& diff) {
-  const auto number = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
   nlohmann::json json = to_json(diff.all, false);
   json["verdict"] = verdict_name(diff.verdict);
+  json["nonfinite_a"] = diff.all.nonfinite_a + diff.errors.a;
+  json["nonfinite_b"] = diff.all.nonfinite_b + diff.errors.b;
+  json["nonfinite_errors"] = {{"a", diff.errors.a}, {"b", diff.errors.b}, {"first", nullptr}};
+  if (!diff.errors.first.empty()) json["nonfinite_errors"]["first"] = diff.errors.first;
   json["reasons"] = diff.reasons;
   json["tolerance"] = {{"absolute", diff.tolerance.absolute}, {"relative", diff.tolerance.relative}};
   json["channels"] = {{"R", to_json(diff.channels[0], false)},
@@ -237,12 +145,12 @@ nlohmann::json to_json(const ImageDiff& diff) {
   json["noise"] = diff.noise ? to_json(*diff.noise) : nlohmann::json();
   json["same_seed"] = diff.same_seed;
   json["exposure"] = diff.exposure;
-  json["psnr"] = number(diff.psnr);
+  json["psnr"] = finite_or_null(diff.psnr);
   for (const char* key : {"ssim", "flip", "hdr_flip", "yee"}) json[key] = nullptr;
   if (const auto& eye = diff.perceptual) {
-    json["ssim"] = number(eye->displayed.ssim);
-    json["flip"] = number(eye->displayed.flip);
-    json["hdr_flip"] = {{"mean", number(eye->hdr_flip)},
+    json["ssim"] = finite_or_null(eye->displayed.ssim);
+    json["flip"] = finite_or_null(eye->displayed.flip);
+    json["hdr_flip"] = {{"mean", finite_or_null(eye->hdr_flip)},
                         {"start_exposure", eye->exposures.start},
                         {"stop_exposure", eye->exposures.stop},
                         {"exposures", eye->exposures.count}};

@@ -11,6 +11,7 @@
 #include "compare/hdr_flip.h"
 #include "compare/noise_verdict.h"
 #include "image/image.h"
+#include "progress.h"
 
 namespace voxref {
 
@@ -40,6 +41,12 @@ struct PerceptualDifference {
   uint64_t yee_pixels = 0;  ///< that an observer could tell apart: Yee 2004, 100 cd/m^2, 45 degrees, by OpenImageIO
 };
 
+/// Standard errors that are NaN or infinite.
+struct NonfiniteErrors {
+  uint64_t a = 0, b = 0;
+  std::string first;  ///< "A pixel (x, y) stderr.R: nan"; empty: there is none
+};
+
 struct ImageDiff {
   Verdict verdict = Verdict::same;
   std::vector<std::string> reasons;  ///< for a verdict that is not `same`, each a sentence
@@ -47,6 +54,7 @@ struct ImageDiff {
   Difference all;                      ///< over R,G,B
   std::array<Difference, 3> channels;  ///< R, G, B
   Difference luminance;
+  NonfiniteErrors errors;
   std::optional<NoiseVerdict>
       noise;               ///< where a side carries standard errors, all is finite, and no tolerance was given
   bool same_seed = false;  ///< both were rendered with one seed: no independent estimates, statistics mislead
@@ -54,16 +62,19 @@ struct ImageDiff {
   double psnr = 0.0;  ///< NaN where a value is not finite, as all that `perceptual` holds
   std::optional<PerceptualDifference> perceptual;
   std::vector<Cause> causes;  ///< searched where the verdict is `different` and all is finite
+
+  bool all_finite() const { return all.nonfinite == 0 && errors.a + errors.b == 0; }
 };
 
 /// Compares R,G,B of an image under test with that of a reference.
 ///
-/// A value that is NaN or infinite on either side makes them different. Else they are `same` when all values but the
-/// allowed fraction agree within the tolerance; else, where a side has noise and no tolerance was asked for, statistics
-/// decide (noise_verdict.h); else they are `different`. Metrics with a limit decide in place of values.
+/// A value or a standard error that is NaN or infinite on either side makes them different. Else they are `same` when
+/// all values but the allowed fraction agree within the tolerance; else, where a side has noise and no tolerance was
+/// asked for, statistics decide (noise_verdict.h); else they are `different`. Metrics with a limit decide in place of
+/// values.
 /// @param a under test @param b reference; see select_layer.h
-/// @throws Error when the sizes differ
-ImageDiff diff_images(const Image& a, const Image& b, const ImageDiffOptions& options);
+/// @throws Error when the sizes differ; Interrupted
+ImageDiff diff_images(const Image& a, const Image& b, const ImageDiffOptions& options, const Progress& progress = {});
 
 /// The keys of cli.md for `diff`, and more.
 nlohmann::json to_json(const ImageDiff& diff);

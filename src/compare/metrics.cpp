@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "compare/difference.h"
 #include "compare/displayed.h"
 #include "compare/measured.h"
 #include "error.h"
@@ -94,17 +95,16 @@ Metrics compare(const Image& cone, const Image& path, bool indirect_only, float 
 }
 
 nlohmann::json to_json(const Metrics& metrics) {
-  const auto number = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
   nlohmann::json json = {{"of", metrics.indirect_only ? "indirect" : "rgb"},
-                         {"mean_ratio", number(metrics.mean_ratio)},
-                         {"rel_error", number(metrics.rel_error)},
-                         {"noise_share", number(metrics.noise_share)},
-                         {"rmse", number(metrics.rmse)},
-                         {"relmse", number(metrics.relmse)},
+                         {"mean_ratio", finite_or_null(metrics.mean_ratio)},
+                         {"rel_error", finite_or_null(metrics.rel_error)},
+                         {"noise_share", finite_or_null(metrics.noise_share)},
+                         {"rmse", finite_or_null(metrics.rmse)},
+                         {"relmse", finite_or_null(metrics.relmse)},
                          {"relmse_formula", Metrics::relmse_formula},
-                         {"psnr", number(metrics.psnr)},
-                         {"ssim", number(metrics.ssim)},
-                         {"flip", number(metrics.flip)},
+                         {"psnr", finite_or_null(metrics.psnr)},
+                         {"ssim", finite_or_null(metrics.ssim)},
+                         {"flip", finite_or_null(metrics.flip)},
                          {"nonfinite_cone", metrics.nonfinite_cone},
                          {"nonfinite_path", metrics.nonfinite_path},
                          {"first_nonfinite", nullptr}};

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "image/transfer.h"
+
 namespace voxref {
 
 namespace {
@@ -29,7 +31,7 @@ std::string turned_name(const glm::ivec3& axes, const glm::bvec3& flips) {
   return name;
 }
 
-/// The 48 symmetries of the grid, simplest first, without those that do nothing along sides of 1.
+/// The 48 symmetries of the grid, simplest first; of a picture, which has one slice, the 8 that keep it one.
 void add_turns(std::vector<Placement>& all, const glm::ivec3& size) {
   constexpr std::array<std::array<int, 3>, 6> orders = {
       {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}}};
@@ -63,8 +65,6 @@ void add_shifts(std::vector<Placement>& all, const glm::ivec3& size) {
 }
 
 constexpr float never = std::numeric_limits<float>::infinity();
-
-float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 template <class Function>
 Recoding of_colors(std::string mistake, Function&& function, float clips_above = never) {
@@ -135,7 +135,7 @@ std::vector<Recoding> recodings(int channels, double factor) {
   std::vector<Recoding> all = {{"", [](const glm::vec4& t) { return t; }, never}};
   if (channels >= 3) add_channel_orders(all);
   constexpr float white = 0.999f;  // an encoded value that may have been clipped
-  all.push_back(of_colors("encoded as sRGB once too often", decode_srgb, white));
+  all.push_back(of_colors("encoded as sRGB once too often", srgb_decode, white));
   all.push_back(of_colors("decoded from sRGB once too often", [](float v) { return srgb_encode(v); }));
   all.push_back(of_colors(
       "gamma 2.2 applied once too often", [](float v) { return v > 0.0f ? std::pow(v, 2.2f) : v; }, white));

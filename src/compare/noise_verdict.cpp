@@ -7,7 +7,9 @@
 #include <span>
 
 #include "compare/convolve.h"
+#include "compare/difference.h"
 #include "error.h"
+#include "image/planes.h"
 
 namespace voxref {
 
@@ -37,9 +39,9 @@ double freedom_of(const Image& image) {
 std::vector<float> copy(std::span<const float> plane) { return {plane.begin(), plane.end()}; }
 
 std::vector<float> luminances(const Image& image) {
-  const auto planes = image.layer("");
+  const Planes planes = image.layer("");
   std::vector<float> values(image.pixel_count());
-  for (size_t i = 0; i < values.size(); ++i) values[i] = luminance({planes[0][i], planes[1][i], planes[2][i]});
+  for (size_t i = 0; i < values.size(); ++i) values[i] = luminance_at(planes, i);
   return values;
 }
 
@@ -165,8 +167,6 @@ void judge_pixels(NoiseVerdict& verdict, const Judge& judge, int width, int heig
   }
 }
 
-nlohmann::json json_number(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
-
 nlohmann::json region_json(const RegionTest& region) {
   return {{"x", region.x},
           {"y", region.y},
@@ -181,7 +181,7 @@ nlohmann::json region_json(const RegionTest& region) {
           {"confidence", region.confidence},
           {"margin", region.margin},
           {"detectable", region.detectable},
-          {"p", json_number(region.p)}};
+          {"p", finite_or_null(region.p)}};
 }
 
 }  // namespace
@@ -202,7 +202,7 @@ NoiseVerdict judge_noise(const Image& a, const Image& b, const NoiseOptions& opt
   verdict.tiles = all.size() * tiles_of(width) * tiles_of(height);
   const double regions = static_cast<double>(verdict.tiles + all.size());
   const double pixels = static_cast<double>(all.size() * a.pixel_count());
-  bool open = false, different = false;
+  bool different = false;
   for (const Quantity& quantity : all) {
     Judge judge{options,
                 quantity,
@@ -213,15 +213,17 @@ NoiseVerdict judge_noise(const Image& a, const Image& b, const NoiseOptions& opt
                 0.0};
     const RegionTest image = judge.test(0, 0, width, height, options.margin);
     judge.least_scale = options.dark * std::abs(image.b.mean);
-    open |= !image.equivalent();
-    different |= judge.differs(image);
+    if (judge.differs(image))
+      different = true;
+    else if (!image.equivalent())
+      ++verdict.image_open;
     verdict.image.push_back(image);
     judge_tiles(verdict, judge, width, height);
     judge.corrected = 0.5 * options.significance / pixels;
     judge_pixels(verdict, judge, width, height);
   }
   different |= verdict.tiles_different + verdict.pixels_different > 0;
-  open |= verdict.tiles_open > 0;
+  const bool open = verdict.image_open + verdict.tiles_open > 0;
   verdict.verdict = different ? Verdict::different : open ? Verdict::too_noisy : Verdict::same;
   return verdict;
 }
@@ -235,6 +237,7 @@ nlohmann::json to_json(const NoiseVerdict& verdict) {
                          {"dark", options.dark},
                          {"tile", options.tile},
                          {"image", nlohmann::json::array()},
+                         {"image_open", verdict.image_open},
                          {"tiles", verdict.tiles},
                          {"tiles_different", verdict.tiles_different},
                          {"tiles_open", verdict.tiles_open},

@@ -30,7 +30,7 @@ struct RegionTest {
   int x = 0, y = 0, width = 0, height = 0;
   std::string channel;
   Estimate a, b;
-  double margin = 0.0;  ///< absolute: the relative margin of the region's mean, see `dark`
+  double margin = 0.0;      ///< absolute: the relative margin of the region's mean, see `dark`
   double confidence = 0.0;  ///< half the width of the interval around a - b that the equivalence test uses
   double detectable = 0.0;  ///< smallest difference that the corrected test would have found with the stated power
   double p = 1.0;           ///< of Welch's test, not corrected
@@ -50,6 +50,7 @@ struct NoiseVerdict {
   Verdict verdict = Verdict::same;
   NoiseOptions options;
   std::vector<RegionTest> image;  ///< one per channel
+  size_t image_open = 0;          ///< of these, neither different nor equivalent
   size_t tiles = 0;               ///< tests of tiles, over all channels
   size_t tiles_different = 0;     ///< over the margin, significantly
   size_t tiles_open = 0;          ///< neither different nor equivalent
@@ -62,7 +63,8 @@ struct NoiseVerdict {
 /// Whether the image tells the noise of its R,G,B: by stderr.R,G,B or by stderr.Y.
 bool has_noise(const Image& image);
 
-/// @param a, b of equal size, finite, with R,G,B; tested in R,G,B, or in luminance where a side has only stderr.Y; a
+/// @param a, b of equal size, finite (standard errors too), with R,G,B; tested in R,G,B, or in luminance where a side
+/// has only stderr.Y; a
 ///        side without standard errors counts as exact
 /// @throws Error when sizes differ or a channel is missing
 NoiseVerdict judge_noise(const Image& a, const Image& b, const NoiseOptions& options);

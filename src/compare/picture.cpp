@@ -10,6 +10,7 @@
 
 #include "file.h"
 #include "image/image_file.h"
+#include "image/planes.h"
 
 namespace voxref {
 
@@ -100,11 +101,14 @@ float rounded_percentile(const std::vector<float>& values) {
   const auto rank = finite.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(finite.size() - 1));
   std::nth_element(finite.begin(), rank, finite.end());
   if (*rank < std::numeric_limits<float>::min()) return 1.0f;
+  const auto to_float = [](double v) {
+    return static_cast<float>(std::min(v, double{std::numeric_limits<float>::max()}));
+  };
   const double decade = std::pow(10.0, std::floor(std::log10(double{*rank})));
   for (const double step : {1.0, 2.0, 5.0})
     // The factor keeps a value that is such a number itself, but for rounding, from going one step up.
-    if (double{*rank} <= step * decade * (1.0 + 1e-6)) return static_cast<float>(step * decade);
-  return static_cast<float>(10.0 * decade);
+    if (double{*rank} <= step * decade * (1.0 + 1e-6)) return to_float(step * decade);
+  return to_float(10.0 * decade);
 }
 
 template <class Function>
@@ -112,10 +116,6 @@ ValueMap map_of(const Image& image, Function&& value) {
   ValueMap map{image.width(), image.height(), std::vector<float>(image.pixel_count())};
   for (size_t i = 0; i < map.values.size(); ++i) map.values[i] = value(i);
   return map;
-}
-
-float pixel_luminance(const std::array<std::span<const float>, 3>& layer, size_t i) {
-  return luminance({layer[0][i], layer[1][i], layer[2][i]});
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ Color map_color(ColorMap map, float t) {
 
 ValueMap signed_difference(const Image& cone, const Image& path) {
   const auto a = cone.layer(""), b = path.layer("");
-  ValueMap map = map_of(cone, [&](size_t i) { return pixel_luminance(a, i) - pixel_luminance(b, i); });
+  ValueMap map = map_of(cone, [&](size_t i) { return luminance_at(a, i) - luminance_at(b, i); });
   map.high = rounded_percentile(map.values);
   map.low = -map.high;
   return map;
@@ -148,13 +148,13 @@ ValueMap relative_error(const Image& cone, const Image& path) {
   const auto a = cone.layer(""), b = path.layer("");
   double sum = 0.0;
   for (size_t i = 0; i < path.pixel_count(); ++i)
-    if (const float value = pixel_luminance(b, i); std::isfinite(value)) sum += double{value};
+    if (const float value = luminance_at(b, i); std::isfinite(value)) sum += double{value};
   // Where everything is black the ratio 0 / floor must still exist.
   const float floor = std::max(static_cast<float>(floor_share * sum / static_cast<double>(path.pixel_count())),
                                std::numeric_limits<float>::min());
   return map_of(cone, [&](size_t i) {
-    const float reference = pixel_luminance(b, i);
-    return std::abs(pixel_luminance(a, i) - reference) / std::max(reference, floor);
+    const float reference = luminance_at(b, i);
+    return std::abs(luminance_at(a, i) - reference) / std::max(reference, floor);
   });
 }
 
@@ -179,7 +179,8 @@ Picture paint(const ValueMap& map, ColorMap colors) {
   Picture picture{map.width, map.height, {}};
   picture.rgb.reserve(3 * map.values.size());
   for (const float value : map.values) {
-    const Color color = map_color(colors, (value - map.low) / (map.high - map.low));
+    const double low = double{map.low}, span = double{map.high} - low;  // which as a float may be infinite
+    const Color color = map_color(colors, static_cast<float>((double{value} - low) / span));
     picture.rgb.insert(picture.rgb.end(), color.begin(), color.end());
   }
   return picture;

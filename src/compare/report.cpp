@@ -1,10 +1,9 @@
 #include "compare/report.h"
 
 #include <array>
-#include <system_error>
 
 #include "compare/picture.h"
-#include "error.h"
+#include "compare/report_parts.h"
 #include "file.h"
 #include "image/image_file.h"
 
@@ -28,10 +27,7 @@ nlohmann::json check_result(const CheckReport& report) {
 }
 
 void write_check(const std::filesystem::path& folder, const CheckReport& report) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) throw Error(folder.string(), "cannot be made: " + failure.message());
-
+  make_folder(folder);
   write_exr(folder / "cone.exr", report.cone);
   write_exr(folder / "path.exr", report.path);
   const Picture cone = display(report.cone, "", report.exposure), path = display(report.path, "", report.exposure);

@@ -32,7 +32,7 @@ std::optional<bool> within_budget(const CheckReport& report);
 nlohmann::json check_result(const CheckReport& report);
 
 /// A self-contained HTML page that opens from disk: no resource from elsewhere, below 3 MiB whatever the images' size
-/// (they are reduced by a whole factor, which the page states, when they have more than 512x512 pixels).
+/// (see comparison_page.h).
 std::string report_page(const CheckReport& report);
 
 /// What write_check writes; comparison.png has cone, path and difference side by side.

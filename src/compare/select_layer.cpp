@@ -5,12 +5,11 @@
 #include <optional>
 
 #include "error.h"
+#include "image/planes.h"
 
 namespace voxref {
 
 namespace {
-
-using Planes = std::array<std::span<const float>, 3>;
 
 std::optional<Planes> triple(const Image& image, const std::string& layer, const std::array<const char*, 3>& names) {
   Planes planes;

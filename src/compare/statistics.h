@@ -39,7 +39,7 @@ inline double student_tail(double t, double freedom) {
   return incomplete_beta(freedom / (freedom + t * t), 0.5 * freedom, 0.5);
 }
 
-/// The t that |T| exceeds with probability `tail`. @param tail in (1e-8, 1)
+/// The t that |T| exceeds with probability `tail`. @param tail above 0, below 1
 inline double student_quantile(double tail, double freedom) {
   double low = 0.0, high = 1.0;
   while (student_tail(high, freedom) > tail) high *= 2.0;

@@ -30,13 +30,13 @@ struct Folders {
   const fs::path &a, &b;
   VolumeIndex index_a, index_b;
   const VolumeLimits& limits;
+  const Progress& progress;
 
   /// Whether volume `name_a` of the first agrees with volume `name_b` of the second; none where one is absent.
   std::optional<bool> agree(const std::string& name_a, const std::string& name_b) const {
     const VolumeEntry *entry_a = index_a.find(name_a), *entry_b = index_b.find(name_b);
     if (!entry_a || !entry_b) return std::nullopt;
-    ArrayFile file_a = open_volume(a, *entry_a), file_b = open_volume(b, *entry_b);
-    return !diff_volumes(*entry_a, file_a, file_b, limits.tolerance).differs(limits);
+    return !diff_volumes(a, *entry_a, b, *entry_b, limits.tolerance, {}, progress).differs(limits);
   }
 };
 
@@ -98,15 +98,16 @@ std::optional<std::string> shifted_levels(const Folders& folders, const std::str
 
 }  // namespace
 
-std::vector<Cause> volume_causes(ArrayFile& a, ArrayFile& b, const Tolerance& tolerance) {
+std::vector<Cause> volume_causes(ArrayFile& a, ArrayFile& b, const Tolerance& tolerance, const Progress& progress) {
   const std::optional<Field> field_a = read_field(a), field_b = read_field(b);
   if (!field_a || !field_b) return {};
   // Half of the last place that a byte rounds away, with a little room, where either side is in bytes.
   constexpr double byte_rounding = 0.6 / 255.0;
   const bool bytes = a.type() == ElementType::uint8 || b.type() == ElementType::uint8;
   const Tolerance loose{10.0 * tolerance.absolute + (bytes ? byte_rounding : 0.0), 10.0 * tolerance.relative};
-  return likely_causes(*field_a, *field_b,
-                       [&](const Mistake& mistake) { return explains(mistake, *field_a, *field_b, loose); });
+  return likely_causes(
+      *field_a, *field_b, [&](const Mistake& mistake) { return explains(mistake, *field_a, *field_b, loose); },
+      progress);
 }
 
 std::vector<Cause> volume_causes(const fs::path& a, const fs::path& b, const FolderDifference& folder,
@@ -114,7 +115,7 @@ std::vector<Cause> volume_causes(const fs::path& a, const fs::path& b, const Fol
   const VolumeDifference* first = folder.first_divergence();
   if (!first || first->missing || first->values.nonfinite > 0) return {};
   progress.check();
-  const Folders folders{a, b, read_volume_index(a), read_volume_index(b), folder.limits};
+  const Folders folders{a, b, read_volume_index(a), read_volume_index(b), folder.limits, progress};
   const VolumeEntry& entry = first->entry;
   if (!entry.face.empty() && entry.level >= 0) {
     const bool bounced = entry.name.starts_with("aniso_bounce");
@@ -123,7 +124,7 @@ std::vector<Cause> volume_causes(const fs::path& a, const fs::path& b, const Fol
   }
   ArrayFile file_a = open_volume(a, *folders.index_a.find(entry.name));
   ArrayFile file_b = open_volume(b, *folders.index_b.find(entry.name));
-  return volume_causes(file_a, file_b, folder.limits.tolerance);
+  return volume_causes(file_a, file_b, folder.limits.tolerance, progress);
 }
 
 }  // namespace voxref

@@ -18,6 +18,6 @@ std::vector<Cause> volume_causes(const std::filesystem::path& a, const std::file
                                  const FolderDifference& folder, const Progress& progress = {});
 
 /// The same for two single volumes.
-std::vector<Cause> volume_causes(ArrayFile& a, ArrayFile& b, const Tolerance& tolerance);
+std::vector<Cause> volume_causes(ArrayFile& a, ArrayFile& b, const Tolerance& tolerance, const Progress& progress = {});
 
 }  // namespace voxref

@@ -6,10 +6,8 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "error.h"
-
 #include "voxel/volume_file.h"
 
 namespace voxref {
@@ -78,16 +76,6 @@ std::string grids_difference(const Grid& a, const Grid& b) {
   return "";
 }
 
-VolumeDifference missing(const VolumeEntry& entry, const std::string& problem) {
-  VolumeDifference volume;
-  volume.entry = entry;
-  volume.problem = problem;
-  volume.missing = true;
-  return volume;
-}
-
-nlohmann::json voxel_json(const glm::ivec3& v) { return {v.x, v.y, v.z}; }
-
 }  // namespace
 
 bool VolumeDifference::differs(const VolumeLimits& limits) const {
@@ -95,24 +83,27 @@ bool VolumeDifference::differs(const VolumeLimits& limits) const {
   return !problem.empty() || values.nonfinite > 0 || values.fraction() > limits.fraction;
 }
 
-VolumeDifference diff_volumes(const VolumeEntry& entry, ArrayFile& a, ArrayFile& b, const Tolerance& tolerance,
-                              const TexelEnvelope& envelope, const Progress& progress) {
+VolumeDifference diff_volumes(const VolumeEntry& entry, const VolumeSource& a, const VolumeSource& b,
+                              const Tolerance& tolerance, const TexelEnvelope& envelope, const Progress& progress) {
   VolumeDifference diff;
   diff.entry = entry;
-  diff.entry.shape = a.shape();
-  if (a.shape() != b.shape()) {
-    diff.problem = shape_text(a.shape()) + " instead of " + shape_text(b.shape());
+  diff.a = a;
+  diff.b = b;
+  ArrayFile file_a = a.open(), file_b = b.open();
+  diff.entry.shape = file_a.shape();
+  if (file_a.shape() != file_b.shape()) {
+    diff.problem = shape_text(file_a.shape()) + " instead of " + shape_text(file_b.shape());
     return diff;
   }
-  const ElementType storage = coarser(a.type(), b.type());
-  std::vector<float> slice_a(a.slice_size()), slice_b(b.slice_size());
-  const auto [depth, height, width, channels] = a.shape();
+  const ElementType storage = coarser(file_a.type(), file_b.type());
+  std::vector<float> slice_a(file_a.slice_size()), slice_b(file_b.slice_size());
+  const auto [depth, height, width, channels] = file_a.shape();
+  const size_t row = width * channels;
   for (size_t z = 0; z < depth; ++z) {
     progress.check();
     progress("comparing", double(z) / double(depth));
-    a.read_slice(z, slice_a);
-    b.read_slice(z, slice_b);
-    const size_t row = width * channels;
+    file_a.read_slice(z, slice_a);
+    file_b.read_slice(z, slice_b);
     for (size_t y = 0; y < height; ++y)
       compare_texels(diff, std::span(slice_a).subspan(y * row, row), std::span(slice_b).subspan(y * row, row),
                      {0, int(y), int(z)}, tolerance, storage, envelope);
@@ -120,14 +111,29 @@ VolumeDifference diff_volumes(const VolumeEntry& entry, ArrayFile& a, ArrayFile&
   return diff;
 }
 
-TexelEnvelope texel_envelope(std::vector<VoxelEnvelope> envelopes, const std::string& volume) {
+VolumeDifference diff_volumes(const std::filesystem::path& folder_a, const VolumeEntry& a,
+                              const std::filesystem::path& folder_b, const VolumeEntry& b, const Tolerance& tolerance,
+                              const TexelEnvelope& envelope, const Progress& progress) {
+  open_volume(folder_a, a);
+  open_volume(folder_b, b);
+  return diff_volumes(a, {folder_a / a.file, a.mip}, {folder_b / b.file, b.mip}, tolerance, envelope, progress);
+}
+
+VolumeDifference not_compared(const VolumeEntry& entry, const std::string& why) {
+  VolumeDifference volume;
+  volume.entry = entry;
+  volume.problem = why;
+  volume.missing = true;
+  return volume;
+}
+
+TexelEnvelope texel_envelope(std::shared_ptr<const std::vector<VoxelEnvelope>> envelopes, const std::string& volume) {
   std::array<AverageEnvelope, 3> VoxelEnvelope::*channels = nullptr;
   if (volume == "albedo") channels = &VoxelEnvelope::albedo;
   if (volume == "normal") channels = &VoxelEnvelope::normal;
   if (volume == "emission") channels = &VoxelEnvelope::emission;
   if (!channels) throw Error("envelope", "'" + volume + "' is no average of fragments");
-  const auto sorted = std::make_shared<const std::vector<VoxelEnvelope>>(std::move(envelopes));
-  return [sorted, channels](const glm::ivec3& voxel, std::span<const float> texel) {
+  return [sorted = std::move(envelopes), channels](const glm::ivec3& voxel, std::span<const float> texel) {
     const auto key = [](const glm::ivec3& v) { return std::array{v.z, v.y, v.x}; };
     const auto found =
         std::lower_bound(sorted->begin(), sorted->end(), voxel,
@@ -143,13 +149,20 @@ TexelEnvelope texel_envelope(std::vector<VoxelEnvelope> envelopes, const std::st
 
 int stage_rank(const VolumeEntry& entry) {
   constexpr std::array<const char*, 5> stages = {"voxelize", "shade", "mipmap", "bounce", "mipmap after bounce"};
-  const auto found = std::find(stages.begin(), stages.end(), entry.stage);
-  return int(found - stages.begin());
+  const auto rank = [&](const std::string& stage) { return int(std::ranges::find(stages, stage) - stages.begin()); };
+  return std::min(rank(entry.stage), rank(stage_making(entry.name)));  // others have other words for a stage
 }
 
 const VolumeDifference* FolderDifference::first_divergence() const {
   const auto found = std::ranges::find_if(volumes, [&](const VolumeDifference& v) { return v.differs(limits); });
   return found == volumes.end() ? nullptr : &*found;
+}
+
+void FolderDifference::conclude(const std::string& whose) {
+  if (std::ranges::all_of(volumes, [](const VolumeDifference& v) { return v.missing; }))
+    throw Error(whose, "volumes", "has none that could be compared");
+  std::ranges::stable_sort(volumes, {}, [](const VolumeDifference& v) { return stage_rank(v.entry); });
+  verdict = first_divergence() || !grids.empty() ? Verdict::different : Verdict::same;
 }
 
 FolderDifference diff_folders(const std::filesystem::path& a, const std::filesystem::path& b,
@@ -159,76 +172,45 @@ FolderDifference diff_folders(const std::filesystem::path& a, const std::filesys
   folder.limits = limits;
   folder.grids = grids_difference(index_a.grid, index_b.grid);
   for (const VolumeEntry& entry : index_a.volumes) {
-    if (const VolumeEntry* other = index_b.find(entry.name)) {
-      ArrayFile file_a = open_volume(a, entry), file_b = open_volume(b, *other);
-      folder.volumes.push_back(diff_volumes(entry, file_a, file_b, limits.tolerance, {}, progress));
-    } else {
-      folder.volumes.push_back(missing(entry, "only the first side has it"));
-    }
+    if (const VolumeEntry* other = index_b.find(entry.name))
+      folder.volumes.push_back(diff_volumes(a, entry, b, *other, limits.tolerance, {}, progress));
+    else
+      folder.volumes.push_back(not_compared(entry, "only the first side has it"));
   }
   for (const VolumeEntry& entry : index_b.volumes)
-    if (!index_a.find(entry.name)) folder.volumes.push_back(missing(entry, "only the second side has it"));
-  std::ranges::stable_sort(folder.volumes, {}, [](const VolumeDifference& v) { return stage_rank(v.entry); });
-  if (folder.first_divergence() || !folder.grids.empty()) folder.verdict = Verdict::different;
+    if (!index_a.find(entry.name)) folder.volumes.push_back(not_compared(entry, "only the second side has it"));
+  folder.conclude(index_file(a).string());
   return folder;
 }
 
-nlohmann::json divergence_json(const VolumeDifference& volume) {
-  const VolumeEntry& entry = volume.entry;
-  nlohmann::json json = {{"stage", entry.stage}, {"volume", entry.name}, {"face", nullptr},
-                         {"level", nullptr},     {"voxel", nullptr},     {"channel", nullptr},
-                         {"a", nullptr},         {"b", nullptr},         {"problem", nullptr}};
-  if (!entry.face.empty()) json["face"] = entry.face;
-  if (entry.level >= 0) json["level"] = entry.level;
-  if (!volume.problem.empty()) json["problem"] = volume.problem;
-  if (const auto& first = volume.values.first) {
-    const nlohmann::json mismatch = to_json(*first, true);
-    json["voxel"] = voxel_json(first->at);
-    json["channel"] = first->channel;
-    json["a"] = mismatch["a"];
-    json["b"] = mismatch["b"];
+FolderDifference find_nonfinite(const std::filesystem::path& folder, const VolumeLimits& limits,
+                                const Progress& progress) {
+  FolderDifference found;
+  found.limits = limits;
+  for (const VolumeEntry& entry : read_volume_index(folder).volumes) {
+    VolumeDifference& volume = found.volumes.emplace_back();
+    volume.entry = entry;
+    ArrayFile file = open_volume(folder, entry);
+    const auto [depth, height, width, channels] = file.shape();
+    std::vector<float> slice(file.slice_size()), finite;
+    for (size_t z = 0; z < depth; ++z) {
+      progress.check();
+      progress("looking for NaN", double(z) / double(depth));
+      file.read_slice(z, slice);
+      finite = slice;
+      std::ranges::replace_if(
+          finite, [](float v) { return !std::isfinite(v); }, 0.0f);
+      for (size_t y = 0, row = width * channels; y < height; ++y)
+        compare_row(volume.values, std::span(slice).subspan(y * row, row), std::span(finite).subspan(y * row, row),
+                    {{0, int(y), int(z)}, 0, int(channels)}, limits.tolerance);
+    }
+    if (const auto& first = volume.values.first_nonfinite)
+      volume.problem =
+          fmt::format("{} values are NaN or infinite, the first at voxel ({}, {}, {}) channel {}: {}",
+                      volume.values.nonfinite, first->at.x, first->at.y, first->at.z, first->channel, first->a);
   }
-  return json;
-}
-
-nlohmann::json to_json(const VolumeDifference& volume, const VolumeLimits& limits) {
-  nlohmann::json json = to_json(volume.values, true);
-  json.update(divergence_json(volume));
-  json["name"] = volume.entry.name;
-  json["verdict"] = verdict_name(volume.differs(limits) ? Verdict::different : Verdict::same);
-  json["missing"] = volume.missing;
-  json["occupied"] = {{"a", volume.occupied_a},
-                      {"b", volume.occupied_b},
-                      {"only_a", volume.occupied_only_a},
-                      {"only_b", volume.occupied_only_b}};
-  json["steps"] = volume.steps;
-  json["within_envelope"] = volume.within_envelope;
-  return json;
-}
-
-nlohmann::json to_json(const FolderDifference& folder) {
-  Difference all;
-  for (const VolumeDifference& volume : folder.volumes) all.append(volume.values);
-  nlohmann::json json = to_json(all, true);
-  for (const char* key : {"worst", "worst_places", "first", "first_nonfinite"}) json.erase(key);  // of which volume?
-  const VolumeDifference* worst = nullptr;
-  json["per_volume"] = nlohmann::json::array();
-  json["missing"] = nlohmann::json::array();
-  for (const VolumeDifference& volume : folder.volumes) {
-    json["per_volume"].push_back(to_json(volume, folder.limits));
-    if (volume.missing) json["missing"].push_back(volume.entry.name);
-    if (!volume.values.worst.empty() && (!worst || volume.values.max_abs > worst->values.max_abs)) worst = &volume;
-  }
-  json["worst"] = nullptr;
-  if (worst) {
-    json["worst"] = to_json(worst->values.worst.front(), true);
-    json["worst"]["volume"] = worst->entry.name;
-  }
-  json["verdict"] = verdict_name(folder.verdict);
-  json["grids"] = folder.grids.empty() ? nlohmann::json() : nlohmann::json(folder.grids);
-  const VolumeDifference* first = folder.first_divergence();
-  json["first_divergence"] = first ? divergence_json(*first) : nlohmann::json();
-  return json;
+  found.conclude(index_file(folder).string());
+  return found;
 }
 
 }  // namespace voxref

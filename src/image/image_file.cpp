@@ -12,6 +12,7 @@
 
 #include "error.h"
 #include "file.h"
+#include "parallel.h"
 
 namespace voxref {
 
@@ -32,13 +33,53 @@ std::string one_line(std::string message) {
 /// could ask for all memory.
 constexpr uint64_t tightest_packing = 1 << 16;
 
-void require_plausible(const std::string& file, const OIIO::ImageSpec& spec) {
+/// Where the pixels of a file lie in its picture.
+struct Window {
+  int left = 0, top = 0;      ///< of the first pixel that the file holds
+  int width = 0, height = 0;  ///< of the picture
+  bool operator==(const Window&) const = default;
+};
+
+/// OpenEXR's data window within its display window. Other formats' offsets are places on a page of paper.
+Window window_of(const OIIO::ImageInput& input, const std::string& file) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (std::string_view(input.format_name()) != "openexr") return {0, 0, spec.width, spec.height};
+  const Window window{spec.x - spec.full_x, spec.y - spec.full_y, spec.full_width, spec.full_height};
+  if (window.left < 0 || window.top < 0 || spec.width > window.width - window.left ||
+      spec.height > window.height - window.top)
+    refuse(file, "it has pixels outside its display window");
+  return window;
+}
+
+void require_plausible(const std::string& file, const OIIO::ImageSpec& spec, const Window& window) {
   if (spec.deep || spec.depth > 1) refuse(file, "it holds more than one value per pixel and channel");
   std::error_code error;
   const uint64_t bytes = std::filesystem::file_size(file, error);
-  if (!error && spec.image_bytes(/*native=*/true) / tightest_packing > bytes)
-    refuse(file, "its header asks for " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+  const auto pixels =
+      static_cast<uint64_t>(std::max(window.width, 0)) * static_cast<uint64_t>(std::max(window.height, 0));
+  if (!error && pixels * spec.pixel_bytes(/*native=*/true) / tightest_packing > bytes)
+    refuse(file, "its header asks for " + std::to_string(window.width) + "x" + std::to_string(window.height) +
                      " pixels, which no file of " + std::to_string(bytes) + " bytes can hold");
+}
+
+/// The pixels that a file holds, at their place in its picture.
+std::vector<float> placed(const std::vector<float>& pixels, const OIIO::ImageSpec& spec, const Window& window,
+                          size_t channels) {
+  std::vector<float> picture(channels * static_cast<size_t>(window.width) * static_cast<size_t>(window.height), 0.0f);
+  const size_t row = channels * static_cast<size_t>(spec.width);
+  for (int y = 0; y < spec.height; ++y) {
+    const size_t to =
+        static_cast<size_t>(window.top + y) * static_cast<size_t>(window.width) + static_cast<size_t>(window.left);
+    std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(row * static_cast<size_t>(y)), row,
+                picture.begin() + static_cast<std::ptrdiff_t>(channels * to));
+  }
+  return picture;
+}
+
+/// OpenImageIO has threads of its own, and OpenEXR its own again.
+void limit_threads() {
+  OIIO::attribute("threads", thread_count());
+  OIIO::attribute("exr_threads", thread_count());
 }
 
 /// The channels' names; those of a further part that have no layer, or are there already, get the part's name as layer.
@@ -54,8 +95,9 @@ std::vector<std::string> channel_names(const OIIO::ImageSpec& spec, const Image&
 /// Reads the part that `input` stands at, from the first wanted channel to the last.
 void add_part(OIIO::ImageInput& input, const std::string& file, int part, Image& image, const ChannelFilter& wanted) {
   const OIIO::ImageSpec& spec = input.spec();
-  require_plausible(file, spec);
-  if (spec.width != image.width() || spec.height != image.height())
+  const Window window = window_of(input, file);
+  require_plausible(file, spec, window);
+  if (window.width != image.width() || window.height != image.height())
     refuse(file, "part " + std::to_string(part) + " has another size than part 0");
   const std::vector<std::string> names = channel_names(spec, image, part);
   const auto is_wanted = [&](const std::string& name) { return !wanted || wanted(name); };
@@ -66,16 +108,18 @@ void add_part(OIIO::ImageInput& input, const std::string& file, int part, Image&
     if (is_wanted(*name) && (image.has(*name) || std::find(first, name, *name) != name))
       refuse(file, "channel '" + *name + "' is there twice");
   const std::span<const std::string> read(first, end);
-  std::vector<float> pixels(read.size() * image.pixel_count());
+  std::vector<float> pixels(read.size() * static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height));
   if (!input.read_image(part, 0, int(first - names.begin()), int(end - names.begin()), OIIO::TypeDesc::FLOAT,
                         pixels.data()))
     refuse(file, input.geterror());
-  add_interleaved(image, pixels, read, wanted);
+  const bool whole = window == Window{0, 0, spec.width, spec.height};
+  add_interleaved(image, whole ? pixels : placed(pixels, spec, window, read.size()), read, wanted);
 }
 
 }  // namespace
 
 void write_exr(const std::filesystem::path& file, const Image& image) {
+  limit_threads();
   write_atomically(file, [&](const std::filesystem::path& temporary) {
     OIIO::ImageSpec spec(image.width(), image.height(), static_cast<int>(image.channels().size()),
                          OIIO::TypeDesc::FLOAT);
@@ -94,13 +138,16 @@ void write_exr(const std::filesystem::path& file, const Image& image) {
 
 StoredImage read_stored_image(const std::filesystem::path& path, const ChannelFilter& wanted) {
   const std::string file = path.string();
+  limit_threads();
   // Otherwise readers multiply colours by alpha, some of them before they undo the transfer.
   OIIO::ImageSpec as_stored;
   as_stored.attribute("oiio:UnassociatedAlpha", 1);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file, &as_stored);
   if (!input) refuse(file, OIIO::geterror());
   const OIIO::ImageSpec spec = input->spec();
-  StoredImage stored{image_for_file(file, size_t(std::max(spec.width, 0)), size_t(std::max(spec.height, 0))),
+  const Window window = window_of(*input, file);
+  require_plausible(file, spec, window);
+  StoredImage stored{image_for_file(file, size_t(std::max(window.width, 0)), size_t(std::max(window.height, 0))),
                      !spec.format.is_floating_point(), spec.get_string_attribute("oiio:ColorSpace")};
   for (const OIIO::ParamValue& attribute : spec.extra_attribs)
     if (attribute.type() == OIIO::TypeDesc::STRING)
@@ -115,6 +162,7 @@ StoredImage read_stored_image(const std::filesystem::path& path, const ChannelFi
 Image read_image(const std::filesystem::path& file) { return read_stored_image(file).image; }
 
 uint64_t yee_difference(const Image& a, const Image& b, float exposure) {
+  limit_threads();
   const auto shown = [&](const Image& image) {
     const auto planes = image.layer("");
     const float scale = std::exp2(exposure);

@@ -23,14 +23,16 @@ struct StoredImage {
 
 /// Reads any image that OpenImageIO reads, as stored: no transfer function is undone, nothing multiplied by alpha.
 /// Channels keep their names; those of an OpenEXR file's further parts get the part's name as layer, unless they have
-/// one that is still free. String attributes come along.
-/// @throws Error with the path when it is missing or damaged, deep, or its parts differ in size
+/// one that is still free. An OpenEXR file's pixels lie in its display window, 0 where it holds none. String attributes
+/// come along.
+/// @throws Error with the path when it is missing or damaged, deep, has pixels outside its display window, or its parts
+/// differ in that window
 StoredImage read_stored_image(const std::filesystem::path& file, const ChannelFilter& wanted = {});
 Image read_image(const std::filesystem::path& file);
 
 /// Pixels of layer "" that an observer could tell apart, Yee 2004, "A Perceptual Metric for Production Testing", as
-/// OpenImageIO computes it for a display of 100 cd/m^2 that fills 45 degrees. Both images, of equal size and finite,
-/// are shown as display_bytes shows them, without its rounding.
+/// OpenImageIO computes it, of linear light, for a display of 100 cd/m^2 that fills 45 degrees. Both images, of equal
+/// size and finite, are shown x 2^exposure and clipped to [0,1].
 uint64_t yee_difference(const Image& a, const Image& b, float exposure);
 
 /// 8-bit RGB, rows from the top, as they shall be shown (already encoded for display): an entire PNG file in memory.

@@ -43,10 +43,10 @@ void linearize(Image& image, Transfer transfer) {
   }
 }
 
-Image read_array_image(const std::filesystem::path& path, const ChannelFilter& wanted, bool& srgb) {
+Image read_array_image(const std::filesystem::path& path, const ChannelFilter& wanted, int mip, bool& srgb) {
   static const std::array<std::vector<std::string>, 4> names = {
       {{"Y"}, {"R", "G"}, {"R", "G", "B"}, {"R", "G", "B", "A"}}};
-  ArrayFile file(path);
+  ArrayFile file(path, mip);
   const auto [depth, height, width, channels] = file.shape();
   if (depth != 1) throw Error(file.name(), "is a volume, not an image");
   if (channels > names.size()) throw Error(file.name(), "has " + std::to_string(channels) + " channels, not 1 to 4");
@@ -61,10 +61,10 @@ Image read_array_image(const std::filesystem::path& path, const ChannelFilter& w
 }  // namespace
 
 Image read_linear_image(const std::filesystem::path& file, std::optional<Transfer> transfer,
-                        const ChannelFilter& wanted) {
+                        const ChannelFilter& wanted, int mip) {
   if (is_array_file(file)) {
     bool srgb = false;
-    Image image = read_array_image(file, wanted, srgb);
+    Image image = read_array_image(file, wanted, mip, srgb);
     linearize(image, transfer.value_or(srgb ? Transfer::srgb : Transfer::linear));
     return image;
   }

@@ -15,8 +15,9 @@ namespace voxref {
 /// others' tags, the _srgb formats of DDS and raw); sRGB where an image file holds integers; none. Alpha, and a layer's
 /// channels that are called otherwise than R, G, B and Y, are never decoded.
 /// @param wanted called with each channel's name; others are left out, and where the format allows it not even read
+/// @param mip level of detail of a file that array_file.h reads; others have none
 /// @throws Error `FILE: PLACE: what is wrong`; for a volume; for a file that says another transfer than voxref knows
 Image read_linear_image(const std::filesystem::path& file, std::optional<Transfer> transfer = std::nullopt,
-                        const ChannelFilter& wanted = {});
+                        const ChannelFilter& wanted = {}, int mip = 0);
 
 }  // namespace voxref

@@ -70,6 +70,22 @@ ElementType read_type(const JsonMembers& members, size_t channels) {
   return format->type;
 }
 
+/// Which of the directional volumes a name is.
+struct AnisoPlace {
+  std::string face;
+  int level = -1;
+  bool bounced = false;
+};
+
+std::optional<AnisoPlace> aniso_place(const std::string& name) {
+  for (const bool bounced : {false, true})
+    for (size_t face = 0; face < face_names.size(); ++face)
+      for (int level = 0; (1 << level) < largest_side; ++level)
+        if (name == aniso_name(face, size_t(level), bounced))
+          return AnisoPlace{std::string(face_names[face]), level, bounced};
+  return std::nullopt;
+}
+
 VolumeEntry read_entry(const JsonMembers& members) {
   VolumeEntry entry;
   entry.name = members.get<std::string>("name");
@@ -83,9 +99,10 @@ VolumeEntry read_entry(const JsonMembers& members) {
     if (entry.shape[d] < 1 || entry.shape[d] > largest_side) members.fail("shape", "has a side out of range");
   if (entry.shape[3] < 1 || entry.shape[3] > most_channels) members.fail("shape", "has a channel count out of range");
   entry.type = read_type(members, entry.shape[3]);
-  entry.stage = members.get<std::string>("stage", "");
-  entry.face = members.get<std::string>("face", "");
-  entry.level = members.get<int>("level", -1);
+  const AnisoPlace place = aniso_place(entry.name).value_or(AnisoPlace{});
+  entry.stage = members.get<std::string>("stage", stage_making(entry.name));
+  entry.face = members.get<std::string>("face", place.face);
+  entry.level = members.get<int>("level", place.level);
   entry.premultiplied = members.get<bool>("premultiplied", false);
   entry.alpha = members.get<std::string>("alpha", "");
   entry.encoding = members.get<std::string>("encoding", "");
@@ -104,6 +121,15 @@ std::string radiance_name(bool bounced) { return bounced ? "radiance_bounce" : "
 std::string aniso_name(size_t face, size_t level, bool bounced) {
   return std::string(bounced ? "aniso_bounce_" : "aniso_") + std::string(face_names[face]) + "_" +
          std::to_string(level);
+}
+
+std::string stage_making(const std::string& volume) {
+  for (const char* name : {"albedo", "normal", "emission", "centroid", "static_flag"})
+    if (volume == name) return "voxelize";
+  if (volume == "visibility" || volume == radiance_name(false)) return "shade";
+  if (volume == radiance_name(true)) return "bounce";
+  const std::optional<AnisoPlace> place = aniso_place(volume);
+  return !place ? "" : place->bounced ? "mipmap after bounce" : "mipmap";
 }
 
 std::filesystem::path index_file(const std::filesystem::path& folder) { return folder / "volumes.json"; }

@@ -16,7 +16,7 @@ struct VolumeEntry {
   int mip = 0;                    ///< level of detail in the file
   std::array<size_t, 4> shape{};  ///< Z, Y, X, C
   ElementType type = ElementType::float32;
-  std::string stage;           ///< that made it: voxelize, shade, bounce, mipmap, "mipmap after bounce"
+  std::string stage;           ///< that made it: voxelize, shade, mipmap, bounce, "mipmap after bounce"; empty: unknown
   std::string face;            ///< one of face_names; empty: none
   int level = -1;              ///< mip level, 0 at half the base resolution; -1: none
   bool premultiplied = false;  ///< rgb is already multiplied by alpha
@@ -40,12 +40,16 @@ std::string radiance_name(bool bounced);
 /// aniso_<face>_<level> or aniso_bounce_<face>_<level>. @param face index into face_names
 std::string aniso_name(size_t face, size_t level, bool bounced);
 
+/// The stage that makes a volume of this name, as cli.md calls them; empty: none does.
+std::string stage_making(const std::string& volume);
+
 std::filesystem::path index_file(const std::filesystem::path& folder);
 
 /// Writes folder/volumes.json. @throws Error with the path
 void write_volume_index(const std::filesystem::path& folder, const VolumeIndex& index);
 
-/// Reads folder/volumes.json, whoever wrote it. Keys that it does not know are ignored.
+/// Reads folder/volumes.json, whoever wrote it. Keys that it does not know are ignored; stage, face and level follow
+/// from a volume's name where they are not given.
 /// @throws Error `FILE: PLACE: what is wrong`
 VolumeIndex read_volume_index(const std::filesystem::path& folder);
 

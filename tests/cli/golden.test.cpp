@@ -1,6 +1,8 @@
-// `voxref golden verify` on the project's own set, and on sets and scenes with planted errors. A missing weight of
-// multiple importance sampling cannot be planted from outside the program; that one is tried by hand.
+// `voxref golden verify` on the project's own set, and on sets and scenes with planted errors.
 #include "cli/workplace.h"
+#include "reference/path.h"
+#include "scene/caster.h"
+#include "scene/gltf.h"
 
 namespace {
 
@@ -110,6 +112,82 @@ TEST_CASE("A shift by half a voxel fails the golden volumes", "[cli][golden]") {
     fs::copy(copy.place.path("shifted") / volume, volumes / volume, fs::copy_options::overwrite_existing);
   const json verdict = copy.verify("volumes_unorm8", 1);
   CHECK(verdict["reasons"].dump().find("albedo") != std::string::npos);
+}
+
+TEST_CASE("A missing weight of multiple importance sampling fails the path-traced golden", "[cli][golden]") {
+  // Each path that ends on a lamp can be found in two ways, by sampling the lamp and by meeting it; the weights of both
+  // add up to one. Without them it counts twice, but for the light that comes straight from lamp to camera, which only
+  // one way finds. So the mean of a renderer without weights is E + 2 (L - E), L being the image and E the emission of
+  // max_depth 0; its error is twice that of L - E. With one weight left out it lies between that and L.
+  const GoldenCopy copy;
+  const fs::path file = copy.place.path("golden") / "path_cornell_box.exr";
+  voxref::Image golden = voxref::read_image(file);
+  const voxref::Scene scene = voxref::load_gltf(copy.place.path("scenes") / "cornell_box.glb");
+  voxref::View view;
+  view.camera = scene.cameras.at(0);
+  view.width = golden.width();
+  view.height = golden.height();
+  voxref::PathOptions options;
+  options.spp = 64;
+  options.max_depth = 0;
+  const voxref::PathResult emission = voxref::path_trace(scene, voxref::Caster(scene), view, options);
+  const voxref::Image right = golden;
+  // One weight left out of both, in the mean a half: the lesser error of the two.
+  for (const double doubled : {0.5, 1.0}) {
+    golden = right;
+    for (size_t c = 0; c < 3; ++c)
+      for (size_t i = 0; i < golden.pixel_count(); ++i) {
+        float& value = golden.layer("")[c][i];
+        value += float(doubled) * (value - emission.image.layer("")[c][i]);
+        golden.layer("stderr")[c][i] *= float(1.0 + doubled);
+      }
+    write_exr(file, golden);
+    const json verdict = copy.verify("path_cornell_box", 1);
+    CHECK(verdict["verdict"] == "different");
+    CHECK(verdict["reasons"].dump().find("the image's mean") != std::string::npos);
+  }
+}
+
+TEST_CASE("A set that was made from something else says so, and a golden of another size ends no run",
+          "[cli][golden]") {
+  const GoldenCopy copy;
+  const fs::path file = copy.place.path("golden") / "golden.json";
+  const std::string original = voxref::read_file(file);
+  json index = json::parse(original);
+  for (json& entry : index["cases"])
+    if (entry["name"] == "cone_plane_test") entry["scene_sha256"] = "of another scene";
+  voxref::write_text(file, index.dump());
+  const Outcome outcome = copy.place.run("golden verify --case cone_plane_test -o failed");
+  CHECK(outcome.status == 1);
+  CHECK(contains(outcome.out, "the golden was made with another scene_sha256"));
+  CHECK(!contains(outcome.out, "pictures and reports"));  // the images agree: there is nothing to show
+  CHECK(!fs::exists(copy.place.path("failed")));
+
+  voxref::Image small(8, 8);
+  small.add_layer("");
+  write_exr(copy.place.path("golden") / "cone_plane_test.exr", small);
+  const Outcome resized = copy.place.run("golden verify --case cone_plane_test --case path_plane_test -o failed");
+  CHECK(resized.status == 1);
+  CHECK(contains(resized.out, "cone_plane_test.exr is 8x8, not 96x96"));
+  CHECK(contains(resized.out, "2 cases, 1 failed"));
+
+  index["cases"] = {"cone_plane_test"};
+  voxref::write_text(file, index.dump());
+  check_refused(copy.place, "golden verify --case cone_plane_test -o failed", "cases[0]: is not an object");
+}
+
+TEST_CASE("Making one case anew leaves what the set says of the others", "[cli][golden]") {
+  const GoldenCopy copy;
+  const fs::path file = copy.place.path("golden") / "golden.json";
+  json index = json::parse(voxref::read_file(file));
+  for (json& entry : index["cases"])
+    if (entry["name"] != "cone_plane_test") entry["scene_sha256"] = "as it was";
+  voxref::write_text(file, index.dump());
+  fs::remove(copy.place.path("scenes") / "cornell_box.glb");  // nor are others' scenes needed
+  REQUIRE(copy.place.run("golden make --case cone_plane_test --quiet").status == 0);
+  const json made = json::parse(voxref::read_file(file));
+  CHECK(made["cases"] == index["cases"]);
+  CHECK(copy.verify("cone_plane_test", 0)["verdict"] == "same");
 }
 
 TEST_CASE("golden refuses unknown cases and folders without a set, in one line", "[cli][golden]") {

@@ -1,13 +1,16 @@
 // The judge of images: what `diff` says of each planted error, and that it says nothing of the kind where none is.
 #include "compare/image_diff.h"
 
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "catch.h"
 #include "compare/select_layer.h"
@@ -197,6 +200,59 @@ TEST_CASE("NaN fails whatever the limits allow, and is located", "[diff]") {
   for (const auto& plane : all.layer("")) std::ranges::fill(plane, nan_value);
   CHECK(diff_images(all, all, generous).verdict == Verdict::different);
   CHECK(diff_images(all, all, {}).all.nonfinite_a == 3 * width * height);
+}
+
+TEST_CASE("A standard error that is NaN fails and is located: its pixel is not exact", "[diff]") {
+  Image broken = noisy(1);
+  broken.channel("stderr.G")[width * 5 + 9] = std::numeric_limits<float>::quiet_NaN();
+  const ImageDiff diff = diff_images(broken, noisy(2), {.perceptual = false});
+  CHECK(diff.verdict == Verdict::different);
+  REQUIRE(diff.reasons.size() == 1);
+  CHECK(diff.reasons[0] == "1 standard errors are NaN or infinite, the first at A pixel (9, 5) stderr.G: nan");
+  CHECK(diff.causes.empty());
+  CHECK(to_json(diff)["nonfinite_a"] == 1);
+  CHECK(diff_images(noisy(2), broken, {.perceptual = false}).errors.b == 1);
+}
+
+TEST_CASE("A verdict that the image's mean alone keeps open quotes the image's mean", "[diff]") {
+  ImageDiffOptions options{.perceptual = false};
+  options.limits.noise.margin = 1e-6;  // no mean of these samples is known so well; tiles may be 5 % off
+  const ImageDiff diff = diff_images(noisy(1), noisy(2), options);
+  CHECK(diff.verdict == Verdict::too_noisy);
+  REQUIRE(diff.noise);
+  CHECK(diff.noise->tiles_open == 0);
+  CHECK(diff.noise->image_open == 3);
+  REQUIRE(diff.reasons.size() == 1);
+  CHECK(diff.reasons[0].starts_with("3 of 3 image means and 0 of 18 tiles are too noisy to say: of the image's mean"));
+}
+
+TEST_CASE("A comparison tells how far it is, and stops where that is asked for", "[diff]") {
+  const std::atomic<bool> stop = true;
+  const Progress stopped{.report = {}, .cancel = &stop};
+  CHECK_THROWS_AS(diff_images(reference(), reference(), {}, stopped), Interrupted);
+  std::set<std::string> stages;
+  const Progress watched{.report = [&](std::string_view stage, double) { stages.insert(std::string(stage)); },
+                         .cancel = nullptr};
+  diff_images(scaled(reference(), 3.0f), reference(), {}, watched);
+  for (const char* stage : {"SSIM and FLIP", "HDR-FLIP", "Yee", "looking for the cause"}) CHECK(stages.contains(stage));
+}
+
+TEST_CASE("HDR-FLIP and Yee see what differs, and more of it where more does", "[diff]") {
+  // A square four times as bright, of 8 and of 16 pixels; Yee's count is at most what was changed and the blur around.
+  const auto with_square = [](int side) {
+    Image image = reference();
+    for (const auto& plane : image.layer(""))
+      for (int y = 20; y < 20 + side; ++y)
+        for (int x = 50; x < 50 + side; ++x) plane[size_t(y) * width + size_t(x)] *= 4.0f;
+    return image;
+  };
+  const auto seen = [&](int side) { return *diff_images(with_square(side), reference(), {}).perceptual; };
+  const PerceptualDifference small = seen(8), large = seen(16);
+  CHECK(small.hdr_flip > 0.0);
+  CHECK(large.hdr_flip > 2.0 * small.hdr_flip);
+  CHECK(small.yee_pixels > 32);
+  CHECK(large.yee_pixels > 2 * small.yee_pixels);
+  CHECK(large.yee_pixels < width * height / 2);
 }
 
 TEST_CASE("Limits on metrics decide in place of the values", "[diff]") {

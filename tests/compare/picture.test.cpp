@@ -127,3 +127,14 @@ TEST_CASE("Pictures stand side by side with a white gap and survive the file", "
   CHECK(read.channel("R")[4] == 0.0f);
   CHECK(read.channel("R")[5] == 1.0f);
 }
+
+TEST_CASE("A picture of the largest floats has a bar with numbers", "[compare]") {
+  // As a distance layer has them where nothing was hit.
+  const float most = std::numeric_limits<float>::max();
+  const Image far = cone_image(200, 10, [&](int, int) { return glm::vec3(0.9f * most); });
+  const ValueMap map = signed_difference(far, cone_image(200, 10, flat(0.0f)));
+  CHECK(std::isfinite(map.high));
+  CHECK(map.low == -map.high);
+  const Picture picture = paint_with_bar(map, voxref::cool_warm());
+  CHECK(pixel_of(picture, 100, 5) == map_color(voxref::cool_warm(), 0.95f));
+}

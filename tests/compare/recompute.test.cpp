@@ -5,6 +5,7 @@
 #include "catch.h"
 #include "compare/volume_folder.h"
 #include "scene/gltf.h"
+#include "voxel/npy.h"
 
 namespace voxref {
 
@@ -80,6 +81,91 @@ TEST_CASE("Averages of fragments are accepted in the order of any GPU, and nothi
   CHECK(!greatest.differs({}));
   set_red(wide->albedo[0].greatest + 1);
   CHECK(albedo_of().differs({}));
+}
+
+namespace {
+
+/// Removes all volumes but those that `keep` takes from a folder's volumes.json.
+template <class Keep>
+void keep_only(const fs::path& folder, Keep&& keep) {
+  auto document = nlohmann::json::parse(read_file(folder / "volumes.json"));
+  auto& volumes = document["volumes"];
+  for (size_t i = volumes.size(); i-- > 0;)
+    if (!keep(volumes[i]["name"].template get<std::string>())) volumes.erase(i);
+  write_text(folder / "volumes.json", document.dump());
+}
+
+const VolumeDifference* find(const FolderDifference& folder, const std::string& name) {
+  const auto found =
+      std::ranges::find_if(folder.volumes, [&](const VolumeDifference& v) { return v.entry.name == name; });
+  return found == folder.volumes.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+TEST_CASE("Levels that were filtered from a bounce are judged without what the bounce was made from", "[diff]") {
+  const TemporaryFolder folder;
+  const fs::path a = folder.path / "a";
+  testing::write_published_volumes(a);
+  tamper(a, "aniso_bounce_pos_z_1", 40);
+  keep_only(a, [](const std::string& name) { return name.find("bounce") != name.npos; });
+  const FolderDifference found = recomputed(a, testing::small_published_scene(), testing::small_published_settings());
+  REQUIRE(found.first_divergence());
+  CHECK(found.first_divergence()->entry.name == "aniso_bounce_pos_z_1");
+  REQUIRE(find(found, "radiance_bounce"));
+  CHECK(find(found, "radiance_bounce")->missing);  // it is listed, and says what it lacks
+  CHECK(find(found, "radiance_bounce")->problem.find("not judged") == 0);
+}
+
+TEST_CASE("What a folder lacks is not judged, and does not keep the rest from it", "[diff]") {
+  const TemporaryFolder folder;
+  const fs::path a = folder.path / "a";
+  testing::write_published_volumes(a);
+  const Scene scene = testing::small_published_scene();
+  const Settings settings = testing::small_published_settings();
+  for (const std::string lacking : {"normal", "albedo", "aniso_neg_y_2", "radiance"}) {
+    INFO(lacking);
+    const fs::path b = folder.path / lacking;
+    fs::copy(a, b);
+    keep_only(b, [&](const std::string& name) { return name != lacking; });
+    const FolderDifference found = recomputed(b, scene, settings);
+    CHECK(found.verdict == Verdict::same);
+    CHECK(find(found, "radiance_bounce")->missing);
+    CHECK(!find(found, "aniso_bounce_pos_x_0")->missing);
+  }
+}
+
+TEST_CASE("Volumes that voxref does not make are no place for garbage", "[diff]") {
+  const TemporaryFolder folder;
+  const fs::path a = folder.path / "a";
+  const Scene scene = testing::small_published_scene();
+  Settings settings = profile("radiometric");
+  settings.grid.resolution = 16;
+  View view;
+  view.camera = scene.cameras.at(0);
+  view.width = view.height = 2;
+  cone_trace(scene, Caster(scene), view, settings, {a});
+  const auto add = [&](const std::string& name, const std::array<size_t, 4>& shape, float value) {
+    write_npy(a / (name + ".npy"), ElementType::float32, shape,
+              [&](size_t, std::span<float> slice) { std::ranges::fill(slice, value); });
+    auto document = nlohmann::json::parse(read_file(a / "volumes.json"));
+    document["volumes"].push_back({{"name", name}, {"shape", shape}, {"dtype", "float32"}});
+    write_text(a / "volumes.json", document.dump());
+  };
+  const glm::ivec3 size = read_volume_index(a).grid.size;
+  const std::array<size_t, 4> shape = {size_t(size.z), size_t(size.y), size_t(size.x), 3};
+  CHECK(!read_volume_index(a).find("emission"));  // no lamp in this box
+  add("emission", shape, 0.0f);
+  CHECK(recomputed(a, scene, settings).verdict == Verdict::same);
+  add("occupancy_of_mine", shape, 7.0f);
+  const FolderDifference unknown = recomputed(a, scene, settings);
+  CHECK(unknown.verdict == Verdict::same);
+  CHECK(find(unknown, "occupancy_of_mine")->missing);
+  add("aniso_neg_x_9", {1, 1, 1, 4}, 0.5f);
+  CHECK(recomputed(a, scene, settings).first_divergence()->entry.name == "aniso_neg_x_9");
+  keep_only(a, [](const std::string& name) { return name != "aniso_neg_x_9" && name != "emission"; });
+  add("emission", shape, 0.25f);
+  CHECK(recomputed(a, scene, settings).first_divergence()->entry.name == "emission");
 }
 
 TEST_CASE("The published shaders' volumes hold against voxref, stage by stage", "[diff][parity]") {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "catch.h"
+#include "compare/browser.h"
 #include "compare/synthetic.h"
 #include "file.h"
 #include "image/image_file.h"
@@ -19,6 +19,8 @@ using voxref::Image;
 using voxref::testing::add_noise;
 using voxref::testing::cone_image;
 using voxref::testing::path_image;
+using voxref::testing::run_in_browser;
+using voxref::testing::use_everything;
 using voxref::testing::wavy;
 
 namespace {
@@ -133,21 +135,6 @@ TEST_CASE("A check leaves its images, pictures, result and page in the folder", 
 
 namespace {
 
-/// The DOM after a browser ran the page, with a further script at its end; none without chromium.
-std::optional<std::string> run_in_browser(const CheckReport& report, const std::string& script,
-                                          const std::string& fragment) {
-  if (std::system("chromium --version >/dev/null 2>&1") != 0) return std::nullopt;
-  const TemporaryFolder folder;
-  const std::filesystem::path page = folder.path / "report.html", dump = folder.path / "dom.html";
-  voxref::write_text(page, report_page(report) + "<script>" + script + "</script>");
-  const std::string command =
-      "chromium --headless --no-sandbox --disable-gpu --disable-background-networking --user-data-dir=" +
-      (folder.path / "profile").string() + " --virtual-time-budget=5000 --dump-dom 'file://" + page.string() + "#" +
-      fragment + "' >" + dump.string() + " 2>/dev/null";
-  REQUIRE(std::system(command.c_str()) == 0);
-  return voxref::read_file(dump);
-}
-
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
@@ -158,7 +145,7 @@ TEST_CASE("The page runs in a browser and shows the values of the middle pixel",
       31, 21, [](int x, int y) { return x == 15 && y == 10 ? glm::vec3(0.78125f, 0.1953125f, 0.0f) : wavy(x, y); });
   const Image path = path_image(31, 21, wavy);
   cone.channel("R")[0] = std::numeric_limits<float>::quiet_NaN();
-  const std::optional<std::string> dom = run_in_browser(report_of(cone, path), "", "difference");
+  const std::optional<std::string> dom = run_in_browser(report_page(report_of(cone, path)), "", "difference");
   if (!dom) VOXREF_SKIP("chromium is not installed");
   CHECK(contains(*dom, "data-state=\"ready\""));
   CHECK(contains(*dom, "pixel (15, 10)"));
@@ -172,22 +159,46 @@ TEST_CASE("Every key, the wheel and the pointer work on the page without a scrip
   const Image cone = cone_image(64, 48, wavy),
               path = path_image(64, 48, [](int x, int y) { return 1.1f * wavy(x, y); });
   // A script error would turn the state to "failed". The last keys leave: path (mode 4), half a stop up, layer 2.
-  const std::optional<std::string> dom = run_in_browser(report_of(cone, path), R"(
-    setTimeout(() => {
-      const press = (key, shiftKey = false) => document.dispatchEvent(new KeyboardEvent("keydown", { key, shiftKey }));
-      for (const key of "123456 [ ]eEdDrlt+-0=") press(key);
-      for (const mode of "13")
-        for (const key of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) [press(mode), press(key), press(key, true)];
-      const box = document.getElementById("canvas").getBoundingClientRect();
-      const at = { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 };
-      document.getElementById("canvas").dispatchEvent(new WheelEvent("wheel", { deltaY: -800, ...at }));
-      for (const key of ["2", "0", "r", "e", "e", "4"]) press(key);
-      document.getElementById("canvas").dispatchEvent(new PointerEvent("pointermove", at));
-    }, 1000);)",
-                                                        "error");
+  const std::optional<std::string> dom = run_in_browser(report_page(report_of(cone, path)), use_everything, "error");
   if (!dom) VOXREF_SKIP("chromium is not installed");
   CHECK(contains(*dom, "data-state=\"ready\""));
   CHECK(contains(*dom, "data-mode=\"b\" aria-checked=\"true\""));
   CHECK(contains(*dom, "pixel (32, 24)"));
   CHECK(contains(*dom, "stops</output>"));
+}
+
+TEST_CASE("The page shows differences far smaller than the rounding of its images", "[compare]") {
+  // 0.1 % at a value of 0.75: a page that took the difference of its 8-bit images would show 0.
+  Image cone = cone_image(32, 24, [](int, int) { return glm::vec3(0.75f * 1.001f, 0.75f, 0.75f * 0.999f); });
+  const Image path = path_image(32, 24, [](int, int) { return glm::vec3(0.75f); });
+  const std::optional<std::string> dom = run_in_browser(report_page(report_of(cone, path)), "", "difference");
+  if (!dom) VOXREF_SKIP("chromium is not installed");
+  CHECK(contains(*dom, "data-state=\"ready\""));
+  const size_t row = dom->find("<tr id=\"readout-difference\">");
+  REQUIRE(row != std::string::npos);
+  const std::string cells = dom->substr(row, dom->find("</tr>", row) - row);
+  INFO(cells);
+  // 0.00075 to the 0.8 % of seven bits, in three digits.
+  CHECK((contains(cells, "<td>0.00075") || contains(cells, "<td>0.00074")));
+  CHECK((contains(cells, "<td>−0.00075") || contains(cells, "<td>−0.00074")));
+  CHECK(contains(cells, "<td>0</td>"));
+}
+
+TEST_CASE("The page's map of relative errors is right where the reference is black, and Space unfolds what is folded",
+          "[compare]") {
+  const Image cone = cone_image(32, 24, [](int, int) { return glm::vec3(0.5f); });
+  const Image black = path_image(32, 24, [](int, int) { return glm::vec3(0.0f); });
+  // The colour left of the marked pixel, in the page's title; and what Space does to the folded keys.
+  const std::optional<std::string> dom = run_in_browser(report_page(report_of(cone, black)), R"(
+    setTimeout(() => {
+      const canvas = document.getElementById("canvas");
+      const pixel = canvas.getContext("2d").getImageData(canvas.width / 4, canvas.height / 2, 1, 1).data;
+      const summary = document.querySelector("summary");
+      const taken = !summary.dispatchEvent(new KeyboardEvent("keydown", { key: " ", bubbles: true, cancelable: true }));
+      document.title = [...pixel.slice(0, 3)].join(",") + (taken ? " taken" : " left to the browser");
+    }, 1000);)",
+                                                        "error");
+  if (!dom) VOXREF_SKIP("chromium is not installed");
+  CHECK(contains(*dom, "data-state=\"ready\""));
+  CHECK(contains(*dom, "<title>252,255,164 left to the browser</title>"));  // inferno's last colour: a full error
 }

@@ -32,6 +32,26 @@ TEST_CASE("Student's tails are those of the closed forms for one, two and three 
     CHECK(student_tail(t, 1000.0) == Approx(student_tail(t, 999.999)).epsilon(1e-3));
 }
 
+TEST_CASE("Student's quantiles are right for tails as small as a large picture's pixels need", "[statistics]") {
+  // 1 % over the three channels of 512x512 pixels is 6e-9 each, over 3840x2160 2e-10; closed forms of one and two
+  // degrees of freedom.
+  for (const double tail : {0.3, 1e-4, 6e-9, 2e-10, 1e-15}) {
+    CAPTURE(tail);
+    CHECK(student_quantile(tail, 1.0) == Approx(1.0 / std::tan(0.5 * std::numbers::pi * tail)).epsilon(1e-9));
+    const double body = 1.0 - tail;
+    CHECK(student_quantile(tail, 2.0) == Approx(body * std::sqrt(2.0 / (tail * (2.0 - tail)))).epsilon(1e-9));
+    for (const double freedom : {3.0, 15.0, 30.0, 400.0, 1e5})
+      CHECK(student_tail(student_quantile(tail, freedom), freedom) == Approx(tail).epsilon(1e-9));
+  }
+  // Of the normal distribution beyond 5 and 6 deviations (any table).
+  const double infinity = std::numeric_limits<double>::infinity();
+  CHECK(student_quantile(5.733031e-7, infinity) == Approx(5.0).epsilon(1e-6));
+  CHECK(student_quantile(1.973175e-9, infinity) == Approx(6.0).epsilon(1e-6));
+  // Where the approximation for many degrees takes over: 0.1 % of a quantile is far less than samples tell.
+  for (const double tail : {6e-9, 2e-10})
+    CHECK(student_quantile(tail, 1000.0) == Approx(student_quantile(tail, 999.999)).epsilon(1e-3));
+}
+
 TEST_CASE("Welch's test is wrong as often as its significance says, and finds as much as its power says",
           "[statistics]") {
   // Samples of 12 and 30 values, spreads 1 and 3. Of 4000 trials 5 % and 90 % are known to 0.35 and 0.5 %; four of

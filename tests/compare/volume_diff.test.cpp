@@ -40,8 +40,7 @@ glm::vec4 varied(const glm::ivec3& v) {
 }
 
 VolumeDifference diff_files(const fs::path& a, const fs::path& b, const TexelEnvelope& envelope = {}) {
-  ArrayFile file_a(a, 0, ArrayMeaning::volume), file_b(b, 0, ArrayMeaning::volume);
-  return diff_volumes({}, file_a, file_b, {}, envelope);
+  return diff_volumes(VolumeEntry{}, VolumeSource{a}, VolumeSource{b}, {}, envelope);
 }
 
 std::string cause_of(const fs::path& a, const fs::path& b) {

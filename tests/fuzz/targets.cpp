@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "error.h"
+#include "image/linear_image.h"
 #include "json_members.h"
 #include "scene/gltf.h"
 #include "settings.h"
@@ -91,4 +92,13 @@ std::string fuzz_gltf(std::string_view input) {
     for (const std::optional<double> time : {std::optional<double>(), std::optional<double>(0.5)})
       validate(load_gltf(file, {time, {}, 1.0f}));
   });
+}
+
+std::string fuzz_image(std::string_view input) {
+  const char* ending = input.starts_with("\x89PNG")                          ? ".png"
+                       : input.starts_with("II*") || input.starts_with("MM") ? ".tif"
+                       : input.starts_with("#?")                             ? ".hdr"
+                                                                             : ".exr";
+  const std::filesystem::path file = write_input(std::string("a") + ending, input);
+  return must_read_or_refuse(file, [&] { read_linear_image(file); });
 }

@@ -17,10 +17,12 @@ std::string fuzz_raw(std::string_view input);       ///< a raw array's descripti
 std::string fuzz_volumes(std::string_view input);   ///< volumes.json
 std::string fuzz_settings(std::string_view input);  ///< --config
 std::string fuzz_gltf(std::string_view input);      ///< .gltf or .glb
+std::string fuzz_image(std::string_view input);     ///< OpenEXR, PNG, TIFF or Radiance's HDR, as its first bytes say
 
-inline constexpr std::array<FuzzTarget, 6> fuzz_targets = {{{"npy", fuzz_npy},
+inline constexpr std::array<FuzzTarget, 7> fuzz_targets = {{{"npy", fuzz_npy},
                                                             {"dds", fuzz_dds},
                                                             {"raw", fuzz_raw},
                                                             {"volumes", fuzz_volumes},
                                                             {"settings", fuzz_settings},
-                                                            {"gltf", fuzz_gltf}}};
+                                                            {"gltf", fuzz_gltf},
+                                                            {"image", fuzz_image}}};

@@ -148,10 +148,17 @@ TEST_CASE("an EXR of many parts is one image, the parts' names its layers", "[li
   CHECK(some.channel("G")[4] == 2.0f);
   CHECK(some.channel("N.X")[4] == 9.0f);
 
-  const std::string sizes = (folder.path / "sizes.exr").string();
-  REQUIRE(
-      oiiotool("--create 3x2 3 --create 2x2 3 --fullsize 3x2+0+0 --attrib oiio:subimagename b --siappend -o " + sizes));
-  CHECK(contains(complaint(sizes), "part 1 has another size than part 0"));
+  // A part that fills less of the display window, which all parts share, and one that leaves it.
+  const auto with_part = [&](const std::string& size) {
+    const std::string sizes = (folder.path / "sizes.exr").string();
+    REQUIRE(oiiotool("--create 3x2 3 --create " + size +
+                     " 3 --addc 1 --fullsize 3x2+0+0 --attrib oiio:subimagename b " + "--siappend -o " + sizes));
+    return sizes;
+  };
+  const Image placed = read_linear_image(with_part("2x2"));
+  CHECK(placed.channel("b.R")[1] == 1.0f);
+  CHECK(placed.channel("b.R")[2] == 0.0f);
+  CHECK(contains(complaint(with_part("4x2")), "outside its display window"));
 }
 
 TEST_CASE("images in array files get their channels' names by number", "[linear_image]") {
@@ -189,6 +196,23 @@ TEST_CASE("images in array files get their channels' names by number", "[linear_
   folder.write("a.raw", "\x80\x80\x80\x80");
   CHECK(read_linear_image(folder.path / "a.raw").channel("R")[0] == srgb_decode(128.0f * (1.0f / 255.0f)));
   CHECK(read_linear_image(folder.path / "a.raw").channel("A")[0] == 128.0f * (1.0f / 255.0f));
+}
+
+TEST_CASE("an EXR's data window lies at its place in the display window, and never outside", "[linear_image]") {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path / "part.exr";
+  const auto write = [&](const std::string& origin) {
+    return oiiotool("--create 2x1 1 --chnames Y --fill:color=1.5 2x1 --origin " + origin + " --fullsize 4x3+10+20 -o " +
+                    file.string());
+  };
+  if (!write("+12+21")) VOXREF_SKIP("oiiotool is not installed");
+  const Image image = read_linear_image(file);
+  REQUIRE(image.width() == 4);
+  REQUIRE(image.height() == 3);
+  const std::vector<float> expected = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.5f, 1.5f, 0.0f, 0.0f, 0.0f, 0.0f};
+  CHECK(std::ranges::equal(image.channel("Y"), expected));
+  REQUIRE(write("+13+21"));
+  CHECK(contains(complaint(file), "outside its display window"));
 }
 
 TEST_CASE("a damaged image file is refused with its name and the reason", "[linear_image]") {

@@ -43,6 +43,7 @@ void require_kept(const fs::path& input, const std::string& what, const NamedFil
 void require_no_clash(const NamedFiles& files) {
   require_kept(files.scene, "the scene", files);
   require_kept(files.config, "the file of --config", files);
+  for (const fs::path& input : files.compared) require_kept(input, "what is compared", files);
   if (!files.volumes) return;
   for (const fs::path& output : files.written)
     if (lies_in(*files.volumes, output) || is_volume_of(*files.volumes, output))

@@ -15,7 +15,7 @@ const show = {
   range: 1,                   // the difference map spans [-range, range]
   pixel: [Math.floor(width / 2), Math.floor(height / 2)],
 };
-let layers = [];    // [{name, a: Float32Array, b: Float32Array}], r,g,b per pixel; NaN where not finite
+let layers = [];    // [{name, a, b, difference: Float32Array}], r,g,b per pixel; NaN where not finite
 let pictures = {};  // canvases of image size by name, painted when first needed, dropped when their settings change
 
 // ---------------------------------------------------------------------------------------------- reading the data
@@ -58,18 +58,19 @@ function paeth(left, up, corner) {
   return a <= b && a <= c ? left : b <= c ? up : corner;
 }
 
-/** Floats from 8-bit mantissas and, in the rows below them, the exponents they share (Ward 1991). */
-function decode(bytes, signed) {
+/** Floats from mantissas and, in the rows below them, the exponents they share (Ward 1991). */
+function decode(bytes, bits, signed) {
   const rgb = new Float32Array(3 * width * height);
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       const exponent = bytes[3 * ((height + Math.floor(y / 3)) * width + x) + (y % 3)];
-      const scale = exponent === 255 ? NaN : 2 ** (exponent - (signed ? 135 : 136)), zero = signed ? 128 : 0;
+      const scale = exponent === 255 ? NaN : 2 ** (exponent - 128 - bits), zero = signed ? 128 : 0;
       for (let c = 0; c < 3; ++c) rgb[3 * (y * width + x) + c] = (bytes[3 * (y * width + x) + c] - zero) * scale;
     }
   return rgb;
 }
 
+const leastFloat = 2 ** -126;
 const luminance = (rgb, i) => 0.2126 * rgb[3 * i] + 0.7152 * rgb[3 * i + 1] + 0.0722 * rgb[3 * i + 2];
 
 // ---------------------------------------------------------------------------------------------- painting pictures
@@ -110,16 +111,16 @@ function paintRadiance(rgb) {
 }
 
 function picture(name) {
-  const { a, b } = layers[show.layer];
+  const { a, b, difference } = layers[show.layer];
   pictures[name] ??= {
     a: () => paintRadiance(a),
     b: () => paintRadiance(b),
     difference: () => paint((i) =>
-      mapColor(data.cool_warm, 0.5 + (0.5 * (luminance(a, i) - luminance(b, i))) / show.range)),
+      mapColor(data.cool_warm, 0.5 + (0.5 * luminance(difference, i)) / show.range)),
     error: () => {
-      const floor = 0.01 * meanLuminance(b) || Number.MIN_VALUE;
+      const floor = Math.max(0.01 * meanLuminance(b), leastFloat);  // so that 0 / floor exists where all is black
       return paint((i) => mapColor(data.inferno,
-        Math.abs(luminance(a, i) - luminance(b, i)) / Math.max(luminance(b, i), floor)));
+        Math.abs(luminance(difference, i)) / Math.max(luminance(b, i), floor)));
     },
   }[name]();
   return pictures[name];
@@ -139,9 +140,9 @@ function roundUp(value) {
 
 /** The 95th percentile of the absolute difference, rounded up. */
 function automaticRange() {
-  const { a, b } = layers[show.layer], values = [];
+  const { difference } = layers[show.layer], values = [];
   for (let i = 0; i < width * height; ++i) {
-    const value = Math.abs(luminance(a, i) - luminance(b, i));
+    const value = Math.abs(luminance(difference, i));
     if (Number.isFinite(value)) values.push(value);
   }
   values.sort((a, b) => a - b);
@@ -254,10 +255,9 @@ function updateBar() {
 }
 
 function updateReadout() {
-  const [x, y] = show.pixel, i = y * width + x, { a, b } = layers[show.layer];
+  const [x, y] = show.pixel, i = y * width + x, layer = layers[show.layer];
   const values = (rgb) => [rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], luminance(rgb, i)];
-  const rows = { a: values(a), b: values(b) };
-  rows.difference = rows.a.map((v, c) => v - rows.b[c]);
+  const rows = { a: values(layer.a), b: values(layer.b), difference: values(layer.difference) };
   element("readout-place").textContent =
     data.factor > 1 ? `pixel (${x}, ${y}), mean of ${data.factor} × ${data.factor}` : `pixel (${x}, ${y})`;
   for (const [name, row] of Object.entries(rows))
@@ -300,7 +300,7 @@ const actions = {
 
 function onKey(event) {
   if (event.ctrlKey || event.altKey || event.metaKey || ["SELECT", "INPUT"].includes(event.target.tagName)) return;
-  if (event.key === " " && event.target.tagName === "BUTTON") return;  // presses the button
+  if (event.key === " " && ["BUTTON", "SUMMARY"].includes(event.target.tagName)) return;  // presses or unfolds it
   const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   const keys = {
     " ": actions.alternate, 0: fit,
@@ -386,8 +386,12 @@ function fail(message) {
 window.addEventListener("error", (event) => fail(event.message));
 
 async function start() {
-  layers = await Promise.all(data.layers.map(async ({ name, signed, a, b }) =>
-    ({ name, a: decode(await readPng(a), signed), b: decode(await readPng(b), signed) })));
+  layers = await Promise.all(data.layers.map(async (layer) => {
+    const read = async (png, bits, signed) => decode(await readPng(png), bits, signed);
+    const [a, b, difference] = await Promise.all([read(layer.a, layer.bits, layer.signed),
+      read(layer.b, layer.bits, layer.signed), read(layer.difference, layer.difference_bits, true)]);
+    return { name: layer.name, a, b, difference };
+  }));
   show.range = automaticRange();
   listen();
   // A link to report.html#difference opens the page there.
