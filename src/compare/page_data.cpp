@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -182,11 +183,11 @@ nlohmann::json page_layers(const ComparisonPage& page, int factor) {
 }  // namespace
 
 nlohmann::json page_data(const ComparisonPage& page) {
+  assert(std::ranges::any_of(
+      page.layers, [&](const PageLayer& pair) { return has_all(page.a, pair.a) && has_all(page.b, pair.b); }));
   int factor = reduction(page.a);
   nlohmann::json layers = page_layers(page, factor);
-  const bool any = std::ranges::any_of(
-      page.layers, [&](const PageLayer& pair) { return has_all(page.a, pair.a) && has_all(page.b, pair.b); });
-  while (any && layers.empty()) layers = page_layers(page, ++factor);
+  while (layers.empty()) layers = page_layers(page, ++factor);
   return {{"width", (page.a.width() + factor - 1) / factor},
           {"height", (page.a.height() + factor - 1) / factor},
           {"factor", factor},

@@ -70,6 +70,13 @@ Slices slices_of(const VolumeDifference& volume) {
   return {volume.entry.name, z, slice_image(a, z), slice_image(b, z)};
 }
 
+/// One black pixel, for the page of a comparison that has nothing to show.
+Slices no_slices() {
+  Image black(1, 1);
+  black.add_layer("");
+  return {"nothing", 0, black, black};
+}
+
 bool has_slices(const VolumeDifference& volume) { return volume.problem.empty() && !volume.b.file.empty(); }
 
 /// The first volume that differs, else the first that can be shown at all.
@@ -138,7 +145,7 @@ void write_volume_report(const fs::path& folder, const VolumeReport& report) {
 
   const bool own = report.recomputed && report.recomputed->first_divergence();
   const VolumeDifference* shown = shown_volume(own ? *report.recomputed : report.first());
-  const Slices slices = shown ? slices_of(*shown) : Slices{"nothing", 0, Image(1, 1), Image(1, 1)};
+  const Slices slices = shown ? slices_of(*shown) : no_slices();
   ComparisonPage page{.command = "voxref diff",
                       .title = report.title,
                       .verdict = verdict_words(report.verdict()),
