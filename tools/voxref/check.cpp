@@ -68,13 +68,13 @@ int run_check(const Options& options) {
   require_folder(options.output);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
-  const Scene scene = load_scene(options.scene, terminal);
   // The cone tracer's image is there while the path tracer works; comparing the two needs less than that.
-  const View view = make_view(options.view, scene, cone_image_bytes_per_pixel + path_bytes_per_pixel(options.path));
+  const OpenedScene opened(options.scene, options.view, cone_image_bytes_per_pixel + path_bytes_per_pixel(options.path),
+                           terminal);
+  const auto& [scene, view, caster] = opened;
   const bool indirect = compares_indirect(scene, view);
   if (options.path.max_depth)
     match_depth(settings, *options.path.max_depth, !scene.lights.empty(), !indirect, terminal);
-  const Caster caster(scene);
   // The cone tracer first: it is quick, and refuses what it cannot do before the path tracer has worked for minutes.
   ConeTraceResult cone = cone_trace(scene, caster, view, settings, options.outputs, terminal.progress());
   PathResult path = path_trace(scene, caster, view, options.path, terminal.progress());

@@ -21,9 +21,8 @@ int run_cone(const ConeCommandOptions& options) {
   require_writable(options.output);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
-  const Scene scene = load_scene(options.scene, terminal);
-  const View view = make_view(options.view, scene, cone_bytes_per_pixel);
-  const Caster caster(scene);
+  const OpenedScene opened(options.scene, options.view, cone_bytes_per_pixel, terminal);
+  const auto& [scene, view, caster] = opened;
   ConeTraceResult result = cone_trace(scene, caster, view, settings, options.outputs, terminal.progress());
 
   nlohmann::json origin = provenance(scene, view);

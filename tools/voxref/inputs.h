@@ -16,6 +16,18 @@ View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_
 size_t path_bytes_per_pixel(const PathOptions& options);
 /// The image, and its copy in the order of the file.
 constexpr size_t cone_bytes_per_pixel = 2 * cone_image_bytes_per_pixel;
+/// What a renderer starts from: the scene, what is seen of it, and what casts rays into it.
+struct OpenedScene {
+  /// @throws Error as load_scene and make_view
+  OpenedScene(const SceneOptions& file, const ViewOptions& look, size_t bytes_per_pixel, Terminal& terminal)
+      : scene(load_scene(file, terminal)), view(make_view(look, scene, bytes_per_pixel)), caster(scene) {}
+  OpenedScene(const OpenedScene&) = delete;  // the caster keeps a reference to the scene
+
+  Scene scene;
+  View view;
+  Caster caster;
+};
+
 /// The profile, then the file, then the assignments. @throws Error with the file or flag, and the parameter
 Settings make_settings(const SettingsOptions& options);
 

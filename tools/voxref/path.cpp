@@ -45,9 +45,8 @@ int run_path(Options& options, const CLI::App& command) {
   remove_leftovers(options.path.checkpoint.file);
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
-  const Scene scene = load_scene(options.scene, terminal);
-  const View view = make_view(options.view, scene, path_bytes_per_pixel(options.path));
-  const Caster caster(scene);
+  const OpenedScene opened(options.scene, options.view, path_bytes_per_pixel(options.path), terminal);
+  const auto& [scene, view, caster] = opened;
   const bool is_part = command.count("--part") > 0;
   nlohmann::json depends = dependencies(options, scene, view);
   const std::string render = depends.dump();

@@ -67,9 +67,8 @@ int run_plan(Options& options) {
   }
   const ThreadLimit threads(options.common.threads);
   Terminal terminal(options.common);
-  const Scene scene = load_scene(options.scene, terminal);
-  const View view = make_view(options.view, scene, cone_bytes_per_pixel);
-  const Caster caster(scene);
+  const OpenedScene opened(options.scene, options.view, cone_bytes_per_pixel, terminal);
+  const auto& [scene, view, caster] = opened;
   const Plan plan = make_plan(scene, caster, view, base, options.plan, terminal.progress());
   if (!options.output.empty() && plan.best) {
     write_text(options.output, config(plan.best->settings).dump(2) + "\n");

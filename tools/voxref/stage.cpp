@@ -34,16 +34,15 @@ struct Input {
   std::filesystem::path output;
 };
 
-Scene stage_scene(const Input& input) {
-  if (input.options.scene.file.empty()) throw Error("SCENE", "stage " + input.options.stage + " needs one");
-  return load_scene(input.options.scene, input.terminal);
+const SceneOptions& needed_scene(const Options& options) {
+  if (options.scene.file.empty()) throw Error("SCENE", "stage " + options.stage + " needs one");
+  return options.scene;
 }
 
 template <class Texel>
 void run_gather(const Input& input) {
-  const Scene scene = stage_scene(input);
-  const View view = make_view(input.options.view, scene, cone_bytes_per_pixel);
-  const Caster caster(scene);
+  const OpenedScene opened(needed_scene(input.options), input.options.view, cone_bytes_per_pixel, input.terminal);
+  const auto& [scene, view, caster] = opened;
   const bool bounced = input.volumes.has("radiance_bounce");
   const Settings& settings = input.settings;
   const LitVolume volume =
@@ -77,8 +76,9 @@ int run_stage(const Options& options) {
   const Progress progress = terminal.progress();
   const Settings& settings = input.settings;
   if (options.stage == "shade")
-    warn(terminal, run_shade(input.volumes, stage_scene(input), settings, input.output, progress), settings.storage,
-         "shading");
+    warn(terminal,
+         run_shade(input.volumes, load_scene(needed_scene(options), terminal), settings, input.output, progress),
+         settings.storage, "shading");
   if (options.stage == "mipmap") run_mipmap(input.volumes, settings, input.output, progress);
   if (options.stage == "bounce")
     warn(terminal, run_bounce(input.volumes, settings, options.view.background, input.output, progress),
