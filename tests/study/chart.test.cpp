@@ -17,7 +17,7 @@ namespace {
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 Chart two_points() {
-  Chart chart{"two", "Two \"points\"", {"time / s", true, {}, {}, {}}, {"error / %", true, {}, {}, {}}, {}, {}, {}};
+  Chart chart{"two", "Two \"points\"", {"time / s", true}, {"error / %", true}, {}, {}, {}};
   chart.series.push_back({"measured", ChartStyle::line_points, {{1.0, 10.0, 2.0, "a_b"}, {10.0, 3.0, 5.0, ""}}, ""});
   return chart;
 }

@@ -15,7 +15,7 @@ namespace {
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 Chart one_point() {
-  Chart chart{"two", "One point", {"time / s", true, {}, {}, {}}, {"error / %", true, {}, {}, {}}, {}, {}, {}};
+  Chart chart{"two", "One point", {"time / s", true}, {"error / %", true}, {}, {}, {}};
   chart.series.push_back({"measured", ChartStyle::points, {{1.0, 10.0}}, ""});
   return chart;
 }
@@ -42,7 +42,7 @@ void write(const TemporaryFolder& folder, const StudyResult& result,
 TEST_CASE("A study without gnuplot writes its data and a page that says so", "[study]") {
   const TemporaryFolder folder;
   write(folder, small_study(), std::nullopt);
-  CHECK(read_file(folder.path / "numbers.csv") == "x [m]\n1.5\n");
+  CHECK(read_file(folder.path / "numbers.csv") == "# voxref study small -o out  (0 s)\nx [m]\n1.5\n");
   const std::string page = read_file(folder.path / "report.html");
   for (const char* part : {"voxref study all", "voxref study small", "gnuplot is not installed", "Two &lt; three.",
                            "sponza: absent", "1.5"})

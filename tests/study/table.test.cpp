@@ -12,7 +12,10 @@ TEST_CASE("A table writes units, missing values and awkward words into CSV and J
   table.add({"box, \"small\"", 0.1, 2.0});
   table.add({std::string("plain"), std::numeric_limits<double>::quiet_NaN(), Cell{}});
   table.add({Cell{}, 3.0, Cell{}});
-  CHECK(csv(table) == "scene,time [s],error\n\"box, \"\"small\"\"\",0.1,2\nplain,,\n,3,\n");
+  table.add({std::string("#1"), Cell{}, Cell{}});
+  const std::string rows = "scene,time [s],error\n\"box, \"\"small\"\"\",0.1,2\nplain,,\n,3,\n\"#1\",,\n";
+  CHECK(csv(table) == rows);
+  CHECK(csv(table, "made by\nhand") == "# made by\n# hand\n" + rows);
   const nlohmann::json json = to_json(table);
   CHECK(json["columns"][1] == nlohmann::json{{"name", "time"}, {"unit", "s"}});
   CHECK(json["rows"][0][1] == 0.1);

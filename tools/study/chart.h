@@ -9,8 +9,8 @@ namespace voxref {
 struct Axis {
   std::string title;  ///< with its unit: "time / s"
   bool logarithmic = false;
-  std::optional<double> min, max;       ///< none: as the data and their error bars need
-  std::vector<std::string> categories;  ///< names of the positions 0, 1, 2 ...; empty: a scale of numbers
+  std::optional<double> min{}, max{};     ///< none: as the data and their error bars need
+  std::vector<std::string> categories{};  ///< names of the positions 0, 1, 2 ...; empty: a scale of numbers
 };
 
 /// The ends of an error bar.
@@ -47,7 +47,7 @@ struct Chart {
   std::string name;  ///< of its files, without extension
   std::string title;
   Axis x, y;
-  std::vector<Series> series;
+  std::vector<Series> series{};
   std::vector<std::string> notes{};  ///< lines to the right of the plot: what short labels mean
   std::string footer{};              ///< above, small: the command that made it, and its time
 };

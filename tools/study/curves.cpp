@@ -21,7 +21,7 @@ ChartPoint chart_point(double x, double y, const std::string& label, double erro
 
 Series curve(const Table& table, const std::string& x, const std::string& y, const std::string& title, ChartStyle style,
              const std::pair<std::string, double>& where) {
-  Series series{title, style, {}};
+  Series series{title, style};
   for (size_t i = 0; i < table.rows.size(); ++i)
     if ((where.first.empty() || table.number(i, where.first) == where.second) && !std::isnan(table.number(i, y)))
       series.points.push_back(chart_point(table.number(i, x), table.number(i, y)));

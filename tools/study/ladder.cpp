@@ -92,7 +92,7 @@ StudyResult run_ladder(const StudyRequest& request) {
   options.voxel_rays = request.quick ? 16 : 64;
   options.narrow_cones = request.quick ? 128 : 1024;
   options.tries = request.quick ? 4 : 8;
-  StudyResult result{"ladder", "how much of the error each approximation owns", {}, {}};
+  StudyResult result{"ladder", "how much of the error each approximation owns"};
   for (const StudyScene& scene : scenes_or_own(request, {cornell_point_scene()}, false, result.skipped))
     result.sections.push_back(ladder_section(scene, options, request.gpu_image, request.progress));
   return result;

@@ -38,8 +38,8 @@ Chart waterfall(const Stretch& stretch, const Region& region) {
   const bool whole = region.name == "whole";
   Chart chart{stretch.name() + (whole ? "" : "_" + region.name),
               stretch.scene.name + (whole ? "" : ", " + region.name) + ": " + stretch.title,
-              {"", false, {}, {}, {}},
-              {"bias / % of the path-traced mean", false, {}, {}, {}},
+              {""},
+              {"bias / % of the path-traced mean"},
               {{"brighter", ChartStyle::bars}, {"darker", ChartStyle::bars}, {"sum", ChartStyle::bars}}};
   const double percent = stretch.percent();
   const int digits = stretch.end - stretch.begin > 14 ? 1 : 2;  // as many as there is room for
@@ -63,9 +63,8 @@ Chart waterfall(const Stretch& stretch, const Region& region) {
 Chart rms_chart(const Stretch& stretch, const std::vector<Region>& regions) {
   Chart chart{stretch.name() + "_rms",
               stretch.scene.name + ": RMS of each change",
-              {"", false, {}, {}, {}},
-              {"RMS change / % of the path-traced mean", true, {}, {}, {}},
-              {}};
+              {""},
+              {"RMS change / % of the path-traced mean", true}};
   const double percent = stretch.percent();
   const std::vector<size_t> shown = changing(stretch, regions[0]);
   for (const size_t r : shown) chart.x.categories.push_back(stretch.rung(r).name);
@@ -102,8 +101,7 @@ Table ladder_table(const StudyScene& scene, const LadderClimb& climb, const std:
        {"bias_stderr", "%"},
        {"rms", "%"},
        {"rms_stderr", "%"},
-       {"rms_to_path", "%"}},
-      {}};
+       {"rms_to_path", "%"}}};
   const std::vector<RungImage>& rungs = climb.rungs;
   const double percent = 100.0 / mean(rungs.front());
   for (const Region& region : regions) {

@@ -172,8 +172,7 @@ Table closure(const StudyScene& scene, const View& view, const LadderOptions& op
   Table table{"ladder_" + scene.name + "_closure",
               "The sum of the rungs up to the published ones, against their ends rendered anew, in percent of the "
               "path-traced mean of the whole image",
-              {{"region", ""}, {"sum", "%"}, {"ends", "%"}, {"gap", "%"}, {"gap_stderr", "%"}, {"p", ""}},
-              {}};
+              {{"region", ""}, {"sum", "%"}, {"ends", "%"}, {"gap", "%"}, {"gap_stderr", "%"}, {"p", ""}}};
   const double percent = 100.0 / truth.mean();
   for (const Region& region : regions) {
     double sum = 0.0, ends = 0.0, variance = 0.0;

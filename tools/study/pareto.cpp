@@ -82,8 +82,7 @@ Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
   Table table{"pareto_" + setup.scene.name + "_cones",
               fmt::format("Cone tracer: every setting with its error and the seconds of all its stages, {} rounds",
                           grid.rounds),
-              setting_columns(),
-              {}};
+              setting_columns()};
   for (const Column& column : measured_columns()) table.columns.push_back(column);
   table.columns.insert(table.columns.end(), {{"rel_bias", ""}, {"memory", "MiB"}, {"frontier", ""}});
   struct Found {
@@ -112,8 +111,7 @@ Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
 Table path_table(const Setup& setup, const ParetoGrid& grid, const Progress& progress) {
   Table table{"pareto_" + setup.scene.name + "_paths",
               fmt::format("Path tracer: mean error of {} seeds", grid.seeds),
-              {{"samples", ""}},
-              {}};
+              {{"samples", ""}}};
   for (const Column& column : measured_columns()) table.columns.push_back(column);
   for (int spp = 1; spp <= grid.most_spp; spp *= 2) {
     std::vector<double> seconds, errors;
@@ -156,7 +154,7 @@ ChartPoint chart_point(const Table& table, size_t row, const std::string& label,
 
 /// What the letters at the frontier mean, and the frontier itself.
 Series frontier_series(const Table& cones, std::span<const size_t> frontier, std::vector<std::string>& notes) {
-  Series series{"the cones' frontier", ChartStyle::line_points, {}};
+  Series series{"the cones' frontier", ChartStyle::line_points};
   notes.emplace_back("On the frontier:");
   double labelled = 0.0;
   for (const size_t i : frontier) {
@@ -178,16 +176,15 @@ Chart pareto_chart(const Setup& setup, const Table& cones, const Table& paths, s
   Chart chart{"pareto_" + setup.scene.name,
               fmt::format("{}, {}x{} pixels: error of the {} light against time", setup.scene.name, setup.view.width,
                           setup.view.height, setup.indirect ? "indirect" : "whole"),
-              {"time of the whole image / s", true, {}, {}, {}},
-              {"relative error (RMS, noise removed) / %", true, {}, {}, {}},
-              {}};
+              {"time of the whole image / s", true},
+              {"relative error (RMS, noise removed) / %", true}};
   std::map<double, Series> by_resolution;
   for (size_t i = 0; i < cones.rows.size(); ++i) {
     Series& series = by_resolution[cones.number(i, "voxels")];
     series.title = fmt::format("cones, {} voxels", cones.number(i, "voxels"));
     series.points.push_back(chart_point(cones, i, "", false));
   }
-  Series samples{"path tracer, samples per pixel", ChartStyle::line_points, {}};
+  Series samples{"path tracer, samples per pixel", ChartStyle::line_points};
   for (size_t i = 0; i < paths.rows.size(); ++i)
     samples.points.push_back(chart_point(paths, i, fmt::format("{}", paths.number(i, "samples")), true));
   for (auto& [resolution, series] : by_resolution) chart.series.push_back(std::move(series));
@@ -258,7 +255,7 @@ StudyResult run_pareto(const StudyRequest& request) {
             64,
             4,
             3};
-  StudyResult result{"pareto", "speed against accuracy", {}, {}};
+  StudyResult result{"pareto", "speed against accuracy"};
   for (const StudyScene& scene :
        scenes_or_own(request, {cornell_point_scene(), light_box_scene()}, true, result.skipped))
     result.sections.push_back(pareto_section(scene, grid, request.progress));

@@ -103,8 +103,8 @@ class Workbench {
 };
 
 Table trial_table(const PlanSearch& search, const SettingSpace& space, const Settings& base, const Workbench& bench) {
-  Table table{
-      "plan_trials", "What was measured, in this order; times are predicted for the full size", setting_columns(), {}};
+  Table table{"plan_trials", "What was measured, in this order; times are predicted for the full size",
+              setting_columns()};
   table.columns.insert(table.columns.end(), {{"rel_error", ""}, {"rel_error_stderr", ""}, {"time", "s"}});
   for (const PlanTrial& trial : search.trials) {
     std::vector<Cell> row = setting_cells(at(space, trial.point, base));

@@ -12,11 +12,10 @@ std::vector<Failure (*)()> failures() {
 
 // A curve takes a second: there is nothing to leave out under --quick.
 StudyResult run_stability(const StudyRequest& request) {
-  StudyResult result{"stability", "where the method breaks", {}, {}};
+  StudyResult result{"stability", "where the method breaks"};
   Table thresholds{"stability_thresholds",
                    "What regression tests hold",
-                   {{"threshold", ""}, {"value", ""}, {"unit", ""}, {"worse", ""}, {"meaning", ""}},
-                   {}};
+                   {{"threshold", ""}, {"value", ""}, {"unit", ""}, {"worse", ""}, {"meaning", ""}}};
   for (const auto& measure : failures()) {
     request.progress.check();
     result.sections.push_back(timed_section("", [&](Section& section) {

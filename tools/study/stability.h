@@ -23,8 +23,8 @@ struct Threshold {
 struct Failure {
   std::string title, text;
   Table table;
-  std::vector<Chart> charts;
-  std::vector<Threshold> thresholds;
+  std::vector<Chart> charts{};
+  std::vector<Threshold> thresholds{};
 };
 
 // Each takes seconds at most. What is measured goes through the stages that renders go through.

@@ -21,22 +21,18 @@ Failure cone_bands() {
       "cone that points at the ball sees it whole, between two cones neither does.",
       {"stability_cone_bands",
        "Light along a line on the floor over the true light",
-       {{"cones", ""}, {"x", "m"}, {"ratio", ""}},
-       {}},
-      {},
-      {}};
+       {{"cones", ""}, {"x", "m"}, {"ratio", ""}}}};
   GridOptions grid;
   grid.resolution = 64;
   const Medium medium = glowing_medium(floor_and_ball(0.0f), grid);
   Chart way{"stability_cone_bands",
             "A ball's light along a line on the floor",
-            {"distance from below the ball / m", false, {}, {}, {}},
-            {"gathered / true light", false, 0.0, {}, {}},
-            {}};
-  Series bands{"measured", ChartStyle::line_points, {}};
+            {"distance from below the ball / m"},
+            {"gathered / true light", false, 0.0}};
+  Series bands{"measured", ChartStyle::line_points};
   constexpr float end = 1.2f;
   for (const int cones : {4, 6, 16, 32, 64, 128, 256}) {
-    Series ratio{fmt::format("{} cones", cones), ChartStyle::line_points, {}};
+    Series ratio{fmt::format("{} cones", cones), ChartStyle::line_points};
     std::vector<double> ratios;
     constexpr int points = 49;
     for (int i = 0; i < points; ++i) {
@@ -60,8 +56,8 @@ Failure cone_bands() {
   failure.charts = {way,
                     {"stability_cone_bands_count",
                      "Bands by the number of cones",
-                     {"cones", true, {}, {}, {}},
-                     {"(largest - smallest) / mean", false, 0.0, {}, {}},
+                     {"cones", true},
+                     {"(largest - smallest) / mean", false, 0.0},
                      {bands}}};
   return failure;
 }
@@ -135,10 +131,7 @@ Failure specular_blur() {
         {"blur", "voxels"},
         {"theory", "voxels"},
         {"true", "voxels"},
-        {"ratio", ""}},
-       {}},
-      {},
-      {}};
+        {"ratio", ""}}}};
   struct Placed {
     int edge;
     Medium medium;
@@ -169,8 +162,8 @@ Failure specular_blur() {
   }
   failure.charts.push_back({"stability_specular_blur",
                             fmt::format("Blur of an edge at {:g} voxels", edge_distance),
-                            {"half-angle / degrees", true, {}, {}, {}},
-                            {"standard deviation / voxels", true, {}, {}, {}},
+                            {"half-angle / degrees", true},
+                            {"standard deviation / voxels", true},
                             {curve(failure.table, "half_angle", "blur", "measured"),
                              curve(failure.table, "half_angle", "theory", "theory, texels", ChartStyle::dashes),
                              curve(failure.table, "half_angle", "true", "truth, a disc", ChartStyle::dashes)}});
@@ -219,22 +212,12 @@ Failure cone_gaps() {
           square_gap()),
       {"stability_cones",
        "Cone sets: light that falls with the cosine, gaps and overlaps",
-       {{"set", ""}, {"factor", ""}, {"theory", ""}, {"gap", ""}, {"overlap", ""}, {"solid_angle", "hemispheres"}},
-       {}},
-      {},
-      {}};
-  Chart light{"stability_cones",
-              "Cone sets on L = cos",
-              {"cones", false, {}, {}, {}},
-              {"gathered / true irradiance", false, {}, {}, {}},
-              {}};
-  Chart gaps{"stability_cone_gaps",
-             "Gaps and overlaps of cone sets",
-             {"cones", false, {}, {}, {}},
-             {"share of the hemisphere", false, 0.0, {}, {}},
-             {}};
-  Series factors{"measured", ChartStyle::points, {}}, theory{"theory, published sets", ChartStyle::points, {}};
-  Series outside{"outside of all cones", ChartStyle::points, {}}, twice{"inside two", ChartStyle::points, {}};
+       {{"set", ""}, {"factor", ""}, {"theory", ""}, {"gap", ""}, {"overlap", ""}, {"solid_angle", "hemispheres"}}}};
+  Chart light{"stability_cones", "Cone sets on L = cos", {"cones"}, {"gathered / true irradiance"}};
+  Chart gaps{
+      "stability_cone_gaps", "Gaps and overlaps of cone sets", {"cones"}, {"share of the hemisphere", false, 0.0}};
+  Series factors{"measured", ChartStyle::points}, theory{"theory, published sets", ChartStyle::points};
+  Series outside{"outside of all cones", ChartStyle::points}, twice{"inside two", ChartStyle::points};
   double worst = 0.0, off = 0.0, gap = 0.0, overlap = 0.0, gap_off = 0.0;
   for (const Set& set : cone_sets()) {
     double sum = 0.0, solid_angle = 0.0;

@@ -64,10 +64,7 @@ Failure clamping() {
       "hold; which voxels a pixel sees, it does not know, nor that filtering rounds again.",
       {"stability_clamping",
        "Mean indirect light in unorm8 over that in float32, by the voxels' peak",
-       {{"peak", "W/(sr m^2)"}, {"ratio", ""}, {"theory", ""}},
-       {}},
-      {},
-      {}};
+       {{"peak", "W/(sr m^2)"}, {"ratio", ""}, {"theory", ""}}}};
   const BoxVoxels box = box_voxels_at_power_1();
   std::vector<ChartPoint> brighter, darker;  // from the peak 1 on: what is lost
   double below = 0.0, off = 0.0;
@@ -90,8 +87,8 @@ Failure clamping() {
   failure.charts.push_back(
       {"stability_clamping",
        "Light that bytes lose",
-       {"peak radiance of the voxels / (W/(sr m^2))", true, {}, {}, {}},
-       {"indirect light, unorm8 / float32", false, 0.0, {}, {}},
+       {"peak radiance of the voxels / (W/(sr m^2))", true},
+       {"indirect light, unorm8 / float32", false, 0.0},
        {curve(failure.table, "peak", "ratio", "measured"),
         curve(failure.table, "peak", "theory", "theory, the voxels' own light", ChartStyle::dashes),
         Series{"radiance 1", ChartStyle::dashes, {chart_point(1.0, 0.0), chart_point(1.0, 1.2)}}}});
@@ -146,10 +143,7 @@ Failure feedback_gain() {
         {"total_ratio", ""},
         {"theory", ""},
         {"theory_gain", ""},
-        {"outcome", ""}},
-       {}},
-      {},
-      {}};
+        {"outcome", ""}}}};
   double off = 0.0, above = 0.0, total_off = 0.0, gain_total_off = 0.0;
   for (const float albedo : {0.2f, 0.4f, 0.6f, 0.8f, 0.9f, 0.95f}) {
     Settings settings = small_settings(16);
@@ -176,14 +170,14 @@ Failure feedback_gain() {
   failure.charts = {
       {"stability_gain",
        "Loop gain of the bounces in a closed room",
-       {"albedo", false, 0.0, 1.05, {}},
-       {"gain", false, 0.0, {}, {}},
+       {"albedo", false, 0.0, 1.05},
+       {"gain", false, 0.0},
        {curve(failure.table, "albedo", "gain", "measured", ChartStyle::points),
         Series{"theory: the albedo", ChartStyle::dashes, {chart_point(0.0, 0.0), chart_point(1.05, 1.05)}}}},
       {"stability_gain_total",
        "Light after all bounces in a closed room",
-       {"albedo", false, 0.0, 1.05, {}},
-       {"light x (1 - albedo)", false, {}, {}, {}},
+       {"albedo", false, 0.0, 1.05},
+       {"light x (1 - albedo)"},
        {curve(failure.table, "albedo", "total_ratio", "measured"),
         curve(failure.table, "albedo", "theory", "theory: 1 - r^(n+2)", ChartStyle::dashes),
         curve(failure.table, "albedo", "theory_gain", "theory with the measured gain", ChartStyle::dashes)}}};

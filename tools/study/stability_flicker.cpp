@@ -26,23 +26,15 @@ Failure flicker_of(const std::string& name, const std::string& title, const std:
                       "spectrum is of what is left when its straight trend is taken off.",
                   {name,
                    "Light on the floor along the way, over the true light",
-                   {{"cones", ""}, {"shift", "voxels"}, {"ratio", ""}},
-                   {}},
-                  {},
-                  {}};
-  Chart way{name,
-            title,
-            {"shift / voxels", false, {}, {}, {}},
-            {"gathered / true light, over its mean", false, {}, {}, {}},
-            {}};
+                   {{"cones", ""}, {"shift", "voxels"}, {"ratio", ""}}}};
+  Chart way{name, title, {"shift / voxels"}, {"gathered / true light, over its mean"}};
   Chart spectrum{name + "_spectrum",
                  title + ": spectrum",
-                 {"frequency / (1 / voxel)", false, 0.5, 4.5, {}},
-                 {"amplitude / mean", true, {}, {}, {}},
-                 {}};
+                 {"frequency / (1 / voxel)", false, 0.5, 4.5},
+                 {"amplitude / mean", true}};
   for (const auto& [cones, ratios] : runs) {
     const std::string title_of_run = fmt::format("{} cones", cones);
-    Series along{title_of_run, ChartStyle::line_points, {}}, lines{title_of_run, ChartStyle::line_points, {}};
+    Series along{title_of_run, ChartStyle::line_points}, lines{title_of_run, ChartStyle::line_points};
     for (size_t i = 0; i < ratios.size(); ++i) {
       const double shift = double(i * periods) / double(ratios.size());
       failure.table.add({double(cones), shift, ratios[i]});

@@ -52,7 +52,7 @@ double extinction_leak(const Medium& medium, int level, double degrees) {
 }
 
 Series theory_by_angle(int level, const std::string& title) {
-  Series series{title, ChartStyle::dashes, {}};
+  Series series{title, ChartStyle::dashes};
   for (int degrees = 0; degrees <= 85; degrees += 5)
     series.points.push_back(chart_point(double(degrees), predicted_leak(level, 1, degrees)));
   return series;
@@ -88,10 +88,7 @@ Failure leak_by_level() {
         {"isotropic_theory", ""},
         {"directional", ""},
         {"directional_theory", ""},
-        {"extinction", ""}},
-       {}},
-      {},
-      {}};
+        {"extinction", ""}}}};
   double worst = 0.0, off = 0.0;
   const auto measure = [&](int thickness, const std::vector<int>& levels, int angle_step) {
     const Pyramid directional = wall_pyramid(wall_side, thickness, 1.0f),
@@ -118,12 +115,11 @@ Failure leak_by_level() {
   const Table by_thickness = failure.table;
   failure.table.rows.insert(failure.table.rows.begin(), by_angle.rows.begin(), by_angle.rows.end());
 
-  const Axis leak{"transmitted / incident", false, 0.0, {}, {}};
+  const Axis leak{"transmitted / incident", false, 0.0};
   Chart angles{"stability_leak_angle",
                "Leak of a wall of one voxel by the angle to its normal",
-               {"angle / degrees", false, 0.0, 90.0, {}},
-               leak,
-               {}};
+               {"angle / degrees", false, 0.0, 90.0},
+               leak};
   for (const int level : {1, 2, 4}) {
     angles.series.push_back(curve(by_angle, "angle", "directional", fmt::format("as published, level {}", level),
                                   ChartStyle::points, {"level", level}));
@@ -134,9 +130,8 @@ Failure leak_by_level() {
       curve(by_angle, "angle", "extinction", "extinction, level 4", ChartStyle::line_points, {"level", 4}));
   Chart levels{"stability_leak_level",
                "Leak of a wall of one voxel by the level of its texel",
-               {"level", false, 0.5, 4.5, {}},
-               leak,
-               {}};
+               {"level", false, 0.5, 4.5},
+               leak};
   levels.series.push_back(curve(by_angle, "level", "isotropic", "isotropic", ChartStyle::points, {"angle", 0}));
   levels.series.push_back(
       curve(by_angle, "level", "isotropic_theory", "theory, isotropic", ChartStyle::dashes, {"angle", 0}));
@@ -146,9 +141,8 @@ Failure leak_by_level() {
       curve(by_angle, "level", "extinction", "extinction, 75 degrees", ChartStyle::line_points, {"angle", 75}));
   Chart thicknesses{"stability_leak_thickness",
                     "Leak of a wall in a texel of 8 voxels by its thickness",
-                    {"thickness / voxels", false, 0.0, 8.5, {}},
-                    leak,
-                    {}};
+                    {"thickness / voxels", false, 0.0, 8.5},
+                    leak};
   for (const int degrees : {45, 75})
     add_pair(thicknesses, by_thickness, "thickness", fmt::format("{} degrees", degrees), {"angle", degrees});
   thicknesses.series.push_back(
@@ -180,10 +174,7 @@ Failure leak_between_rooms() {
                   "that is aligned with the grid or turned; and for cones that read opacity raw, aligned.",
                   {"stability_leak_rooms",
                    "Dark half over lit half",
-                   {{"angle", "degrees"}, {"thickness", "voxels"}, {"extinction", ""}, {"raw", ""}},
-                   {}},
-                  {},
-                  {}};
+                   {{"angle", "degrees"}, {"thickness", "voxels"}, {"extinction", ""}, {"raw", ""}}}};
   constexpr int resolution = 48, width = 16;
   double worst = 0.0, thick = 0.0, raw_worst = 0.0;
   for (const float degrees : {0.0f, 22.5f, 45.0f}) {
@@ -207,9 +198,8 @@ Failure leak_between_rooms() {
   }
   Chart chart{"stability_leak_rooms",
               "Light behind a wall",
-              {"thickness / voxels", false, 0.0, {}, {}},
-              {"dark half / lit half", true, {}, {}, {}},
-              {}};
+              {"thickness / voxels", false, 0.0},
+              {"dark half / lit half", true}};
   for (const double degrees : {0.0, 22.5, 45.0})
     chart.series.push_back(curve(failure.table, "thickness", "extinction",
                                  fmt::format("extinction, turned by {:g} degrees", degrees), ChartStyle::line_points,

@@ -93,10 +93,7 @@ Failure opposite_normals() {
         {"dark", ""},
         {"dark_theory", ""},
         {"lit_published", ""},
-        {"dark_published", ""}},
-       {}},
-      {},
-      {}};
+        {"dark_published", ""}}}};
   Settings published = profile("villegas2016");
   published.shade.shadow = VoxelShadow::none;
   const double published_unit = std::numbers::pi;  // its lights' intensity is not divided by pi
@@ -114,8 +111,8 @@ Failure opposite_normals() {
   }
   failure.charts.push_back({"stability_opposite_normals",
                             "A thin slab's lit and dark side",
-                            {"thickness / voxels", false, 0.0, {}, {}},
-                            {"radiance / that of the lit side", false, 0.0, {}, {}},
+                            {"thickness / voxels", false, 0.0},
+                            {"radiance / that of the lit side", false, 0.0},
                             {curve(failure.table, "thickness", "lit", "lit side", ChartStyle::points),
                              curve(failure.table, "thickness", "lit_theory", "theory, lit side", ChartStyle::dashes),
                              curve(failure.table, "thickness", "dark", "dark side", ChartStyle::points),

@@ -98,10 +98,7 @@ Failure odd_scenes() {
         {"least", "W/(sr m^2)"},
         {"most", "W/(sr m^2)"},
         {"nonfinite", "pixels"},
-        {"outcome", ""}},
-       {}},
-      {},
-      {}};
+        {"outcome", ""}}}};
   double wrong = 0.0;
   for (const OddScene& odd : odd_scene_list()) {
     const ConeTraceResult result = trace_odd(odd.scene);

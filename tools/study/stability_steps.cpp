@@ -46,10 +46,7 @@ Failure step_dependence() {
         {"extinction_error", ""},
         {"raw", ""},
         {"raw_theory", ""},
-        {"whole_texels_theory", ""}},
-       {}},
-      {},
-      {}};
+        {"whole_texels_theory", ""}}}};
   const Pyramid raw = wall_pyramid(32, 1, 0.5f);
   const Occupancy occupied(raw);
   const Medium medium = make_medium(wall_pyramid(32, 1, 0.5f));
@@ -75,8 +72,8 @@ Failure step_dependence() {
   failure.charts.push_back(
       {"stability_step",
        "A layer of opacity 0.5, marched with steps of several lengths",
-       {"step / voxels", true, {}, {}, {}},
-       {"transmittance", false, 0.0, {}, {}},
+       {"step / voxels", true},
+       {"transmittance", false, 0.0},
        {curve(failure.table, "step", "extinction", "extinction"),
         curve(failure.table, "step", "raw", "raw opacity", ChartStyle::points),
         curve(failure.table, "step", "raw_theory", "theory, raw, interpolated", ChartStyle::dashes),
@@ -115,7 +112,7 @@ Approach approach(float step) {
 }
 
 Series along(const std::vector<double>& x, const std::vector<double>& y, const std::string& title) {
-  Series series{title, ChartStyle::line_points, {}};
+  Series series{title, ChartStyle::line_points};
   for (size_t i = 0; i < x.size(); ++i) series.points.push_back(chart_point(x[i], y[i]));
   return series;
 }
@@ -130,15 +127,11 @@ Failure step_bands() {
       "shows as bands; steps above a diameter skip the wall.",
       {"stability_step_bands",
        "Radiance of a wall of radiance 1: mean over the distances, and largest less smallest over that",
-       {{"step", "cone diameters"}, {"extinction", ""}, {"extinction_bands", ""}, {"raw", ""}, {"raw_bands", ""}},
-       {}},
-      {},
-      {}};
+       {{"step", "cone diameters"}, {"extinction", ""}, {"extinction_bands", ""}, {"raw", ""}, {"raw_bands", ""}}}};
   Chart way{"stability_step_bands_way",
             "A wall of radiance 1, seen from growing distances",
-            {"distance / voxels", false, {}, {}, {}},
-            {"radiance / true radiance", false, 0.0, {}, {}},
-            {}};
+            {"distance / voxels"},
+            {"radiance / true radiance", false, 0.0}};
   for (const float step : {0.1f, 0.25f, 0.5f, 0.75f, 1.0f, 1.5f, 2.5f}) {
     const Approach a = approach(step);
     failure.table.add(
@@ -153,8 +146,8 @@ Failure step_bands() {
                raw = curve(failure.table, "step", "raw_bands", "raw opacity");
   failure.charts = {{"stability_step_bands",
                      "Bands by the step",
-                     {"step / cone diameters", true, {}, {}, {}},
-                     {"(largest - smallest) / mean", false, 0.0, {}, {}},
+                     {"step / cone diameters", true},
+                     {"(largest - smallest) / mean", false, 0.0},
                      {extinction, raw}},
                     way};
   const auto at_half =

@@ -25,9 +25,9 @@ struct Section {
 
 struct StudyResult {
   std::string name, title;
-  std::vector<Section> sections;
-  std::vector<std::string> skipped;  ///< what was left out, and why
-  std::string command{};             ///< that makes this study alone; the caller's to fill in
+  std::vector<Section> sections{};
+  std::vector<std::string> skipped{};  ///< what was left out, and why
+  std::string command{};               ///< that makes this study alone; the caller's to fill in
 };
 
 /// A scene with the camera that studies look through.

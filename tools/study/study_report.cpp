@@ -94,6 +94,11 @@ std::string page(const fs::path& folder, std::span<const StudyResult> results, c
   return html + "</body></html>\n";
 }
 
+/// How a figure came about, as it stands on it.
+std::string made_by(const StudyResult& result, const Section& section) {
+  return fmt::format("{}  ({:.0f} s)", result.command, section.seconds);
+}
+
 }  // namespace
 
 nlohmann::json study_result(std::span<const StudyResult> results, const nlohmann::json& provenance) {
@@ -124,7 +129,7 @@ void write_study(const fs::path& folder, const StudyResult& result, const nlohma
   fs::create_directories(folder);
   for (const Section& section : result.sections) {
     for (const Table& table : section.tables) {
-      write_text(folder / (table.name + ".csv"), csv(table));
+      write_text(folder / (table.name + ".csv"), csv(table, made_by(result, section)));
       nlohmann::json json = to_json(table);
       json["provenance"] = provenance;
       json["command"] = result.command;
@@ -133,7 +138,7 @@ void write_study(const fs::path& folder, const StudyResult& result, const nlohma
     }
     if (!gnuplot) continue;
     for (Chart chart : section.charts) {
-      chart.footer = fmt::format("{}  ({:.0f} s)", result.command, section.seconds);
+      chart.footer = made_by(result, section);
       if (!is_empty(chart)) draw(chart, *gnuplot, folder);
     }
   }

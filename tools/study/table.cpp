@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 namespace voxref {
@@ -12,7 +13,7 @@ namespace voxref {
 namespace {
 
 std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  if (text.find_first_of(",#\"\n") == std::string::npos) return text;  // from # on readers take it for a comment
   std::string result = "\"";
   for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
   return result + "\"";
@@ -62,8 +63,11 @@ double Table::number(size_t row, const std::string& wanted) const {
   return value ? *value : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::string csv(const Table& table) {
-  std::string text = line(table.columns, heading);
+std::string csv(const Table& table, const std::string& comment) {
+  std::string text;
+  std::istringstream lines(comment);
+  for (std::string words; std::getline(lines, words);) text += "# " + words + "\n";
+  text += line(table.columns, heading);
   for (const auto& row : table.rows) text += line(row, [](const Cell& cell) { return csv(cell); });
   return text;
 }

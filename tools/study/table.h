@@ -20,7 +20,7 @@ struct Table {
   std::string name;     ///< of its files, without extension
   std::string caption;  ///< one sentence
   std::vector<Column> columns;
-  std::vector<std::vector<Cell>> rows;  ///< as many cells as there are columns
+  std::vector<std::vector<Cell>> rows{};  ///< as many cells as there are columns
 
   /// @throws std::logic_error when the number of cells is not that of the columns
   void add(std::vector<Cell> row);
@@ -31,7 +31,9 @@ struct Table {
 };
 
 /// A heading "name [unit]" and one line per row (RFC 4180); numbers with their shortest decimals.
-std::string csv(const Table& table);
+/// @param comment goes before it, "# " at the start of each of its lines, which gnuplot skips, and pandas with
+/// comment="#"; empty: none
+std::string csv(const Table& table, const std::string& comment = {});
 /// {name, caption, columns: [{name, unit}], rows: [[...]]}
 nlohmann::json to_json(const Table& table);
 /// A cell as a reader wants it: four significant digits.

@@ -7,7 +7,7 @@
 namespace voxref {
 
 StudyResult thesis_study(const StudyRequest& request, const ThesisSizes& sizes) {
-  StudyResult result{"thesis", "the thesis's tables, measured again", {}, {}};
+  StudyResult result{"thesis", "the thesis's tables, measured again"};
   const Progress& progress = request.progress;
   std::vector<StudyScene> scenes = thesis_scenes(request, result.skipped);
   const auto add = [&](Section section) { result.sections.push_back(std::move(section)); };

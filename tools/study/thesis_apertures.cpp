@@ -48,8 +48,7 @@ Section thesis_apertures(const ThesisSizes& sizes, const Progress& progress) {
          {"shadow", "s"},
          {"shadow_error", "s"},
          {"penumbra", ""},
-         {"visible", ""}},
-        {}};
+         {"visible", ""}}};
     const StudyScene box = cornell_point_scene(), pillar = plane_test_scene();
     Settings shadows = thesis_shadow_settings(sizes.base);
     const PreparedScene lamp(box, shadows, progress), test(pillar, shadows, progress);
@@ -86,11 +85,10 @@ Section thesis_apertures(const ThesisSizes& sizes, const Progress& progress) {
             100.0 * table.number(last, "visible"));
     Chart times{"thesis_apertures",
                 "Time of an image by the aperture of its cones",
-                {"half-angle / degrees", true, {}, {}, {}},
-                {"processor time / s", false, 0.0, {}, {}},
-                {}};
+                {"half-angle / degrees", true},
+                {"processor time / s", false, 0.0}};
     for (const std::string column : {"specular", "shadow"}) {
-      Series series{column, ChartStyle::line_points, {}};
+      Series series{column, ChartStyle::line_points};
       for (size_t i = 0; i < table.rows.size(); ++i)
         series.points.push_back(chart_point(table.number(i, "half_angle"), table.number(i, column), "",
                                             table.number(i, column + "_error")));
@@ -98,8 +96,8 @@ Section thesis_apertures(const ThesisSizes& sizes, const Progress& progress) {
     }
     Chart soft{"thesis_soft_shadows",
                "Soft shadow of a pillar by the aperture of shadow cones",
-               {"half-angle / degrees", true, {}, {}, {}},
-               {"share", false, 0.0, {}, {}},
+               {"half-angle / degrees", true},
+               {"share", false, 0.0},
                {curve(table, "half_angle", "penumbra", "pixels that see a part"),
                 curve(table, "half_angle", "visible", "light that is seen, mean")}};
     section.charts = {std::move(times), std::move(soft)};

@@ -49,18 +49,15 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
                  {"rel_error", ""},
                  {"rel_error_stderr", ""},
                  {"colorfulness", ""},
-                 {"colorfulness_true", ""}},
-                {}};
+                 {"colorfulness_true", ""}}};
     Chart light{"thesis_emission",
                 "Light of emissive objects, against the path tracer",
-                {"voxels along the longest side", true, {}, {}, {}},
-                {"cone traced / path traced mean", false, 0.0, {}, {}},
-                {}};
+                {"voxels along the longest side", true},
+                {"cone traced / path traced mean", false, 0.0}};
     Chart error{"thesis_emission_error",
                 "Error of the light of emissive objects",
-                {"voxels along the longest side", true, {}, {}, {}},
-                {"rel_error", false, 0.0, {}, {}},
-                {}};
+                {"voxels along the longest side", true},
+                {"rel_error", false, 0.0}};
     std::vector<bool> better;
     for (const StudyScene& scene : glowing) {
       const Caster caster(scene.scene);
@@ -68,7 +65,7 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
       PathOptions path;
       path.spp = sizes.spp;
       const Image truth = reflected(path_trace(scene.scene, caster, view, path, progress).image);
-      Series ratios{scene.name, ChartStyle::line_points, {}}, errors = ratios;
+      Series ratios{scene.name, ChartStyle::line_points}, errors = ratios;
       for (const int resolution : sizes.resolutions) {
         progress.check();
         Settings settings;

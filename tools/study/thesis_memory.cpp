@@ -14,11 +14,8 @@ Section thesis_memory_use(MemoryByScene memory, const std::vector<StudyScene>& o
       for (const int voxels : sizes.resolutions) memory[{scene.name, voxels}] = volume_memory(scene, voxels, progress);
     Shape shape("thesis_memory", fmt::format("All volumes, over those at {} voxels of the same scene", sizes.base),
                 "MB", "MB");
-    Chart chart{"thesis_memory",
-                "Memory of the volumes",
-                {"voxels along the longest side", true, {}, {}, {}},
-                {"memory / MB", true, {}, {}, {}},
-                {}};
+    Chart chart{
+        "thesis_memory", "Memory of the volumes", {"voxels along the longest side", true}, {"memory / MB", true}};
     std::map<std::string, std::vector<ShapeLine>> scenes;
     for (const auto& [key, bytes] : memory) {
       double published = misprint;
@@ -31,12 +28,12 @@ Section thesis_memory_use(MemoryByScene memory, const std::vector<StudyScene>& o
       size_t base = 0;
       while (lines[base].name != std::to_string(sizes.base)) ++base;
       shape.add_block(scene, "memory", lines, base);
-      Series series{scene, ChartStyle::line_points, {}};
+      Series series{scene, ChartStyle::line_points};
       for (size_t i = 0; i < lines.size(); ++i)
         series.points.push_back(chart_point(sizes.resolutions[i], lines[i].ours.spread.median));
       chart.series.push_back(std::move(series));
     }
-    Series published{"published, any scene", ChartStyle::dashes, {}};
+    Series published{"published, any scene", ChartStyle::dashes};
     for (const ThesisMemory& row : thesis_memory)
       if (row.voxels <= sizes.resolutions.back()) published.points.push_back(chart_point(row.voxels, row.megabytes));
     chart.series.push_back(std::move(published));

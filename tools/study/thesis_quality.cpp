@@ -64,7 +64,7 @@ class Changes {
  public:
   Changes(Table& table, Chart& yee, Chart& flip, const std::string& scene, const Image& base)
       : table_(table), yee_(yee), flip_(flip), base_(base) {
-    for (Chart* chart : {&yee_, &flip_}) chart->series.push_back({scene, ChartStyle::points, {}});
+    for (Chart* chart : {&yee_, &flip_}) chart->series.push_back({scene, ChartStyle::points});
   }
   Perceived add(const std::string& change, const Image& image) {
     const Perceived seen = perceived(base_, image);
@@ -86,13 +86,13 @@ class Changes {
 };
 
 Table perceived_table(const std::string& name, const std::string& caption) {
-  return {name, caption, {{"scene", ""}, {"change", ""}, {"yee", "share of pixels"}, {"flip", "mean"}}, {}};
+  return {name, caption, {{"scene", ""}, {"change", ""}, {"yee", "share of pixels"}, {"flip", "mean"}}};
 }
 
 std::pair<Chart, Chart> perceived_charts(const std::string& name, const std::string& title) {
-  const Axis changes{"", false, {}, {}, {}};
-  return {Chart{name + "_yee", title + " (Yee)", changes, {"share of pixels that differ", false, 0.0, {}, {}}, {}},
-          Chart{name + "_flip", title + " (FLIP)", changes, {"mean FLIP", false, 0.0, {}, {}}, {}}};
+  const Axis changes{""};
+  return {Chart{name + "_yee", title + " (Yee)", changes, {"share of pixels that differ", false, 0.0}},
+          Chart{name + "_flip", title + " (FLIP)", changes, {"mean FLIP", false, 0.0}}};
 }
 
 const char* const metrics =

@@ -70,8 +70,7 @@ Shape::Shape(const std::string& name, const std::string& caption, const std::str
               {"published", published_unit},
               {"ratio_published", ""},
               {"factor", ""},
-              {"shape", ""}},
-             {}} {}
+              {"shape", ""}}} {}
 
 void Shape::add_block(const std::string& scene, const std::string& quantity, const std::vector<ShapeLine>& lines,
                       size_t base) {
@@ -128,7 +127,7 @@ std::string Shape::summary(std::span<const ShapeReason> reasons) const {
 
 std::vector<Series> shape_series(const Table& shape, const std::string& scene, const std::string& quantity,
                                  const std::string& title) {
-  Series ours{title, ChartStyle::line_points, {}}, published{title + ", published", ChartStyle::dashes, {}};
+  Series ours{title, ChartStyle::line_points}, published{title + ", published", ChartStyle::dashes};
   for (size_t i = 0; i < shape.rows.size(); ++i) {
     if (word(shape.rows[i][shape.column("scene")]) != scene ||
         word(shape.rows[i][shape.column("quantity")]) != quantity)

@@ -49,7 +49,7 @@ class Shape {
   const Table& table() const { return table_; }
   /// Of every quantity: how many ratios agree within a factor of 2, which do not, and why where that is known. A ratio
   /// whose spread reaches back within the factor counts as unsure.
-  std::string summary(std::span<const ShapeReason> reasons) const;
+  std::string summary(std::span<const ShapeReason> reasons = {}) const;
 
  private:
   Table table_;

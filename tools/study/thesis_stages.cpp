@@ -148,9 +148,8 @@ Section thesis_stage_times(const std::vector<StudyScene>& scenes, const ThesisSi
                                          std::pair("thesis_bounce", "bounce"), std::pair("thesis_mipmap", "mipmap")}) {
       Chart chart{name,
                   fmt::format("Time by resolution: {}", quantity),
-                  {"voxels along the longest side", true, {}, {}, {}},
-                  {fmt::format("time / that at {} voxels", sizes.base), true, {}, {}, {}},
-                  {}};
+                  {"voxels along the longest side", true},
+                  {fmt::format("time / that at {} voxels", sizes.base), true}};
       for (const Measured& scene : measured)
         for (Series& series : shape_series(resolution_shape.table(), scene.scene, quantity, scene.scene))
           chart.series.push_back(std::move(series));
