@@ -64,6 +64,10 @@ TEST_CASE("Theory has the colour of its measurement, and a place in the legend",
   const std::string script = gnuplot_script(chart, "svg", "two.svg");
   CHECK(contains(script, "$data1 using 1:2 with lines lw 1.5 dt 2 lc rgb '#0072B2' title \"theory\""));
   CHECK(contains(script, "$data2 using 1:2 with lines lw 2 lc rgb '#D55E00' title \"other\""));
+  chart.series[1].color_of = "";  // beside no one series: grey, and the colours go on without it
+  const std::string neutral = gnuplot_script(chart, "svg", "two.svg");
+  CHECK(contains(neutral, "$data1 using 1:2 with lines lw 1.5 dt 2 lc rgb '#555555' title \"theory\""));
+  CHECK(contains(neutral, "$data2 using 1:2 with lines lw 2 lc rgb '#D55E00' title \"other\""));
   chart.series[1].color_of = "nobody";
   CHECK_THROWS_AS(gnuplot_script(chart, "svg", "two.svg"), Error);
 }

@@ -42,7 +42,7 @@ void write(const TemporaryFolder& folder, const StudyResult& result,
 TEST_CASE("A study without gnuplot writes its data and a page that says so", "[study]") {
   const TemporaryFolder folder;
   write(folder, small_study(), std::nullopt);
-  CHECK(read_file(folder.path / "numbers.csv") == "# voxref study small -o out  (0 s)\nx [m]\n1.5\n");
+  CHECK(read_file(folder.path / "numbers.csv") == "# voxref study small -o out  (0.1 s)\nx [m]\n1.5\n");
   const std::string page = read_file(folder.path / "report.html");
   for (const char* part : {"voxref study all", "voxref study small", "gnuplot is not installed", "Two &lt; three.",
                            "sponza: absent", "1.5"})
@@ -60,7 +60,7 @@ TEST_CASE("gnuplot draws both pictures, which say how they were made", "[study]"
   const std::string page = read_file(folder.path / "report.html");
   CHECK(contains(page, "<svg"));
   CHECK(!contains(page, "<?xml"));
-  CHECK(contains(page, "voxref study small -o out  (0 s)"));
+  CHECK(contains(page, "voxref study small -o out  (0.1 s)"));
 }
 
 TEST_CASE("A chart that holds nothing is left out of a report, and named", "[study]") {

@@ -103,13 +103,17 @@ std::string data_block(const Chart& chart, size_t index) {
   return text + "EOD\n";
 }
 
-/// Which of the colours a series has: the next one, or that of the series that it belongs to.
-size_t color_index(const Chart& chart, size_t index) {
+/// Whether a series is dashes that stand beside all of the others, and for none of them.
+bool is_neutral(const Series& series) { return series.style == ChartStyle::dashes && series.color_of.empty(); }
+
+/// A series has the next colour, or that of the series that it belongs to.
+std::string color_of(const Chart& chart, size_t index) {
+  if (is_neutral(chart.series[index])) return "#555555";
   const std::string& wanted = chart.series[index].color_of;
   size_t own = 0;
   for (size_t i = 0; i < chart.series.size(); ++i) {
-    if (wanted.empty() ? i == index : chart.series[i].title == wanted) return own % colors.size();
-    if (chart.series[i].color_of.empty()) ++own;
+    if (wanted.empty() ? i == index : chart.series[i].title == wanted) return colors[own % colors.size()];
+    if (chart.series[i].color_of.empty() && !is_neutral(chart.series[i])) ++own;
   }
   throw Error("chart", chart.name, "has no series '" + wanted + "'");
 }
@@ -136,8 +140,7 @@ std::vector<std::string> plots(const Chart& chart, size_t index) {
   const bool errors = has([](const ChartPoint& p) { return p.error > 0.0 || p.y_bar; });
   const bool x_errors = has([](const ChartPoint& p) { return p.x_bar.has_value(); });
   const bool bars = series.style == ChartStyle::bars;
-  const std::string data = fmt::format("$data{}", index),
-                    color = fmt::format("lc rgb '{}'", colors[color_index(chart, index)]);
+  const std::string data = fmt::format("$data{}", index), color = fmt::format("lc rgb '{}'", color_of(chart, index));
   const std::string title = series.title.empty() ? "notitle" : "title " + quoted(series.title) + " noenhanced";
   const std::string symbol = fmt::format("pt {} ps 1.1", symbols[index % symbols.size()]);
   std::vector<std::string> result;

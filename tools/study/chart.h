@@ -29,7 +29,7 @@ struct ChartPoint {
 enum class ChartStyle : uint8_t {
   points,
   line,
-  dashes,  ///< a line that nobody measured: theory, a threshold
+  dashes,  ///< a line that nobody measured: theory, a threshold; grey, unless it has the colour of another series
   line_points,
   bars  ///< from `base` to y
 };

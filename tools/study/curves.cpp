@@ -28,6 +28,13 @@ Series curve(const Table& table, const std::string& x, const std::string& y, con
   return series;
 }
 
+Series theory_curve(const Table& table, const std::string& x, const std::string& y, const std::string& title,
+                    const std::string& beside, const std::pair<std::string, double>& where) {
+  Series series = curve(table, x, y, title, ChartStyle::dashes, where);
+  series.color_of = beside;
+  return series;
+}
+
 Series level_line(double y, double from, double to, const std::string& title) {
   return {title, ChartStyle::dashes, {chart_point(from, y), chart_point(to, y)}};
 }

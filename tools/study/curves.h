@@ -16,6 +16,10 @@ ChartPoint chart_point(double x, double y, const std::string& label = {}, double
 Series curve(const Table& table, const std::string& x, const std::string& y, const std::string& title,
              ChartStyle style = ChartStyle::line_points, const std::pair<std::string, double>& where = {});
 
+/// The same as dashes in the colour of the series that it stands beside.
+Series theory_curve(const Table& table, const std::string& x, const std::string& y, const std::string& title,
+                    const std::string& beside, const std::pair<std::string, double>& where = {});
+
 /// A dashed horizontal line.
 Series level_line(double y, double from, double to, const std::string& title);
 

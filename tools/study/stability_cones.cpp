@@ -165,7 +165,7 @@ Failure specular_blur() {
                             {"half-angle / degrees", true},
                             {"standard deviation / voxels", true},
                             {curve(failure.table, "half_angle", "blur", "measured"),
-                             curve(failure.table, "half_angle", "theory", "theory, texels", ChartStyle::dashes),
+                             theory_curve(failure.table, "half_angle", "theory", "theory, texels", "measured"),
                              curve(failure.table, "half_angle", "true", "truth, a disc", ChartStyle::dashes)}});
   failure.thresholds.push_back({"specular_blur_break", breaks_at(from_wide, 3.0), "degrees",
                                 "half-angle below which the blur is over three times the cone's own"});
@@ -216,7 +216,7 @@ Failure cone_gaps() {
   Chart light{"stability_cones", "Cone sets on L = cos", {"cones"}, {"gathered / true irradiance"}};
   Chart gaps{
       "stability_cone_gaps", "Gaps and overlaps of cone sets", {"cones"}, {"share of the hemisphere", false, 0.0}};
-  Series factors{"measured", ChartStyle::points}, theory{"theory, published sets", ChartStyle::points};
+  Series factors{"measured", ChartStyle::points}, theory{"theory, published sets", ChartStyle::dashes};
   Series outside{"outside of all cones", ChartStyle::points}, twice{"inside two", ChartStyle::points};
   double worst = 0.0, off = 0.0, gap = 0.0, overlap = 0.0, gap_off = 0.0;
   for (const Set& set : cone_sets()) {
@@ -246,7 +246,8 @@ Failure cone_gaps() {
           std::max({gap_off, std::abs(1.0 - covers.covered - square_gap()), std::abs(covers.overlap - square_gap())});
   }
   const auto last = double(light.x.categories.size()) - 1.0;
-  light.series = {theory, factors, level_line(1.0, 0.0, last, "theory, any partition")};
+  theory.color_of = factors.title;
+  light.series = {factors, theory, level_line(1.0, 0.0, last, "theory, any partition")};
   gaps.series = {outside, twice, level_line(square_gap(), 0.0, last, "theory, square cells")};
   failure.charts = {light, gaps};
   failure.thresholds = {

@@ -75,9 +75,10 @@ Failure contact_gap() {
     own_light.series.push_back(
         curve(failure.table, "start", "self_lighting", fmt::format("{} cones", cones), ChartStyle::line_points, these));
     for (const int voxels : {1, 4})
-      errors.series.push_back(curve(failure.table, "start", fmt::format("error_at_{}", voxels),
-                                    fmt::format("{} voxels from the wall, {} cones", voxels, cones),
-                                    ChartStyle::line_points, these));
+      errors.series.push_back(
+          curve(failure.table, "start", fmt::format("error_at_{}", voxels),
+                fmt::format("{} voxel{} from the wall, {} cones", voxels, voxels == 1 ? "" : "s", cones),
+                ChartStyle::line_points, these));
   }
   errors.series.push_back(level_line(0.0, 0.5, 3.0, "theory"));
   failure.charts = {own_light, errors};

@@ -90,7 +90,7 @@ Failure clamping() {
        {"peak radiance of the voxels / (W/(sr m^2))", true},
        {"indirect light, unorm8 / float32", false, 0.0},
        {curve(failure.table, "peak", "ratio", "measured"),
-        curve(failure.table, "peak", "theory", "theory, the voxels' own light", ChartStyle::dashes),
+        theory_curve(failure.table, "peak", "theory", "theory, the voxels' own light", "measured"),
         Series{"radiance 1", ChartStyle::dashes, {chart_point(1.0, 0.0), chart_point(1.0, 1.2)}}}});
   constexpr double noticed = 0.05;
   failure.thresholds = {
@@ -180,7 +180,7 @@ Failure feedback_gain() {
        {"light x (1 - albedo)"},
        {curve(failure.table, "albedo", "total_ratio", "measured"),
         curve(failure.table, "albedo", "theory", "theory: 1 - r^(n+2)", ChartStyle::dashes),
-        curve(failure.table, "albedo", "theory_gain", "theory with the measured gain", ChartStyle::dashes)}}};
+        theory_curve(failure.table, "albedo", "theory_gain", "theory with the measured gain", "measured")}}};
   failure.thresholds = {
       {"gain_error", off, "", "most that the gain is off the albedo, to albedo 0.95"},
       {"gain_excess", std::max(above, gain_at_1 - 1.0), "", "most that it is above the albedo, to albedo 1"},

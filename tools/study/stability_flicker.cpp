@@ -30,7 +30,7 @@ Failure flicker_of(const std::string& name, const std::string& title, const std:
   Chart way{name, title, {"shift / voxels"}, {"gathered / true light, over its mean"}};
   Chart spectrum{name + "_spectrum",
                  title + ": spectrum",
-                 {"frequency / (1 / voxel)", false, 0.5, 4.5},
+                 {.title = "frequency / (1 / voxel)", .categories = {"1", "2", "3", "4"}},
                  {"amplitude / mean", true}};
   for (const auto& [cones, ratios] : runs) {
     const std::string title_of_run = fmt::format("{} cones", cones);
@@ -41,7 +41,7 @@ Failure flicker_of(const std::string& name, const std::string& title, const std:
       along.points.push_back(chart_point(shift, ratios[i] / mean(ratios)));
     }
     const std::vector<double> amplitudes = harmonics(ratios, periods, 4);
-    for (size_t k = 0; k < amplitudes.size(); ++k) lines.points.push_back(chart_point(double(k + 1), amplitudes[k]));
+    for (size_t k = 0; k < amplitudes.size(); ++k) lines.points.push_back(chart_point(double(k), amplitudes[k]));
     way.series.push_back(std::move(along));
     spectrum.series.push_back(std::move(lines));
     failure.thresholds.push_back({fmt::format("{}_{}_cones", name, cones), ripple(ratios), "",

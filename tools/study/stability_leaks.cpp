@@ -62,8 +62,8 @@ Series theory_by_angle(int level, const std::string& title) {
 void add_pair(Chart& chart, const Table& table, const std::string& x, const std::string& label,
               const std::pair<std::string, double>& where) {
   chart.series.push_back(curve(table, x, "directional", "as published, " + label, ChartStyle::points, where));
-  chart.series.push_back(curve(table, x, "directional_theory", "theory, " + label, ChartStyle::dashes, where));
-  chart.series.back().color_of = "as published, " + label;
+  chart.series.push_back(
+      theory_curve(table, x, "directional_theory", "theory, " + label, "as published, " + label, where));
 }
 
 }  // namespace
@@ -134,7 +134,7 @@ Failure leak_by_level() {
                leak};
   levels.series.push_back(curve(by_angle, "level", "isotropic", "isotropic", ChartStyle::points, {"angle", 0}));
   levels.series.push_back(
-      curve(by_angle, "level", "isotropic_theory", "theory, isotropic", ChartStyle::dashes, {"angle", 0}));
+      theory_curve(by_angle, "level", "isotropic_theory", "theory, isotropic", "isotropic", {"angle", 0}));
   for (const int degrees : {45, 75})
     add_pair(levels, by_angle, "level", fmt::format("{} degrees", degrees), {"angle", degrees});
   levels.series.push_back(

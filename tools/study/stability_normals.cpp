@@ -114,9 +114,9 @@ Failure opposite_normals() {
                             {"thickness / voxels", false, 0.0},
                             {"radiance / that of the lit side", false, 0.0},
                             {curve(failure.table, "thickness", "lit", "lit side", ChartStyle::points),
-                             curve(failure.table, "thickness", "lit_theory", "theory, lit side", ChartStyle::dashes),
+                             theory_curve(failure.table, "thickness", "lit_theory", "theory, lit side", "lit side"),
                              curve(failure.table, "thickness", "dark", "dark side", ChartStyle::points),
-                             curve(failure.table, "thickness", "dark_theory", "theory, dark side", ChartStyle::dashes),
+                             theory_curve(failure.table, "thickness", "dark_theory", "theory, dark side", "dark side"),
                              curve(failure.table, "thickness", "lit_published", "lit side, published profile"),
                              curve(failure.table, "thickness", "dark_published", "dark side, published profile")}});
   failure.thresholds = {

@@ -76,7 +76,7 @@ Failure step_dependence() {
        {"transmittance", false, 0.0},
        {curve(failure.table, "step", "extinction", "extinction"),
         curve(failure.table, "step", "raw", "raw opacity", ChartStyle::points),
-        curve(failure.table, "step", "raw_theory", "theory, raw, interpolated", ChartStyle::dashes),
+        theory_curve(failure.table, "step", "raw_theory", "theory, raw, interpolated", "raw opacity"),
         curve(failure.table, "step", "whole_texels_theory", "theory, raw, whole texels", ChartStyle::dashes)}});
   failure.thresholds = {
       {"step_error", worst, "", "most that the transmittance is off 0.5, for steps up to a voxel and any offset"},
