@@ -54,6 +54,24 @@ inline std::array<float, 8> corner_shares(const Float4& f) {
   return {low[0], high[0], low[1], high[1], low[2], high[2], low[3], high[3]};
 }
 
+/// A sum of look-ups of one direction of travel in volumes of directional texels.
+template <class Kernel, class Read>
+class LookupSum {
+ public:
+  explicit LookupSum(const Read& read) : read_(read) {}
+
+  /// @param corners Corners or BrickCorners @param shares of the eight
+  template <class SomeCorners, class Shares>
+  void add(const SomeCorners& corners, const Shares& shares) {
+    total_ += Kernel::interpolate(corners, shares, read_);
+  }
+  Float4 total() const { return total_; }
+
+ private:
+  const Read& read_;
+  Float4 total_{};
+};
+
 /// The value between corners, which are Corners or BrickCorners. @param shares of the eight corners, summing to 1
 struct PlainKernel {
   template <class SomeCorners, class Shares, class Read>
@@ -62,6 +80,10 @@ struct PlainKernel {
     for (size_t i = 0; i < 8; ++i) sum += shares[i] * value(corners[i], read);
     return sum;
   }
+
+  /// What sums look-ups in volumes of Directional<Texel>.
+  template <class Texel, class Read>
+  using Sum = LookupSum<PlainKernel, Read>;
 
  private:
   /// Of a texel that looks the same from everywhere,

@@ -5,16 +5,18 @@
 
 #include "cone/interpolate.h"
 
-// What marches call most is compiled twice: for any machine, and for those with AVX2 and half floats in hardware. GCC
-// and Clang compile marked functions for these whatever the rest is compiled for.
-#define VOXREF_WIDE __attribute__((target("avx2,f16c")))
+// What marches call most is compiled twice: for any machine, and for those with AVX2, fused multiplication and
+// addition, and half floats in hardware. GCC and Clang compile marked functions for these whatever the rest is compiled
+// for.
+#define VOXREF_WIDE __attribute__((target("avx2,fma,f16c")))
 /// Of the function that all the others are to be compiled into.
-#define VOXREF_WIDE_ALL __attribute__((target("avx2,f16c"), flatten))
+#define VOXREF_WIDE_ALL __attribute__((target("avx2,fma,f16c"), flatten))
 
 namespace voxref {
 
 /// Whether this machine can call what is marked so.
-inline const bool wide_machine = __builtin_cpu_supports("avx2");  // then it has half floats too
+inline const bool wide_machine =
+    __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");  // half floats are older
 
 namespace wide_detail {
 
@@ -61,63 +63,39 @@ VOXREF_WIDE inline Float4 halves_added(const __m256& sum) {
 
 }  // namespace wide_detail
 
-/// The same two texels at a time: the results differ by rounding.
-struct WideKernel {
-  template <class SomeCorners, class Shares, class Read>
-  VOXREF_WIDE static Float4 interpolate(const SomeCorners& corners, const Shares& shares, const Read& read) {
-    using Texel = typename SomeCorners::Texel;
-    if constexpr (std::is_same_v<Texel, Directional<Rgba8>> && std::is_same_v<Read, SquaredRead>)
-      return interpolate_bytes(corners, shares, read);
-    else if constexpr (wide_detail::is_directional<Texel>)
-      return interpolate_pairs(corners, shares, read);
-    else
-      return PlainKernel::interpolate(corners, shares, read);
-  }
-
- private:
-  template <class SomeCorners, class Shares, class Read>
-  VOXREF_WIDE static Float4 interpolate_pairs(const SomeCorners& corners, const Shares& shares, const Read& read) {
-    using namespace wide_detail;
-    __m256 sums[3] = {_mm256_setzero_ps(), _mm256_setzero_ps(), _mm256_setzero_ps()};
-    for (size_t row = 0; row < 4; ++row) {
-      const __m256 share = _mm256_setr_m128(_mm_set1_ps(shares[2 * row]), _mm_set1_ps(shares[2 * row + 1]));
-      const auto &a = corners[2 * row], &b = corners[2 * row + 1];
-      for (size_t axis = 0; axis < 3; ++axis) {
-        const size_t face = read.faces[axis];
-        sums[axis] = _mm256_add_ps(sums[axis], _mm256_mul_ps(value_of_pair<Read>(a[face], b[face]), share));
-      }
-    }
-    __m256 sum = _mm256_mul_ps(sums[0], _mm256_set1_ps(read.weights[0]));
-    sum = _mm256_add_ps(sum, _mm256_mul_ps(sums[1], _mm256_set1_ps(read.weights[1])));
-    sum = _mm256_add_ps(sum, _mm256_mul_ps(sums[2], _mm256_set1_ps(read.weights[2])));
-    return halves_added(sum);
-  }
-
-  // A texel's faces towards x and y are spread out by one shuffle of its first 16 bytes, those towards z of two texels
-  // by one of their last eight.
-  template <class SomeCorners, class Shares>
-  VOXREF_WIDE static Float4 interpolate_bytes(const SomeCorners& corners, const Shares& shares,
-                                              const SquaredRead& read) {
-    using namespace wide_detail;
+/// A sum of look-ups in volumes of directional bytes. What they have in common is done once: to choose the faces and to
+/// weight them.
+class ByteSum {
+ public:
+  VOXREF_WIDE explicit ByteSum(const SquaredRead& read) {
     constexpr char none = -128;  // becomes 0
     const __m256i spread = _mm256_broadcastsi128_si256(
         _mm_setr_epi8(0, none, none, none, 1, none, none, none, 2, none, none, none, 3, none, none, none));
-    const __m256i xy = _mm256_add_epi8(spread, halves_of(4 * read.faces[0], 4 * read.faces[1]));
-    const __m256i z = _mm256_add_epi8(spread, halves_of(4 * read.faces[2] - 16, 4 * read.faces[2] - 8));
-    __m256 sum_xy = _mm256_setzero_ps(), sum_z = _mm256_setzero_ps();
+    // A texel's faces towards x and y are spread out by one shuffle of its first 16 bytes, those towards z of two
+    // texels by one of their last eight.
+    choose_xy_ = _mm256_add_epi8(spread, halves_of(4 * read.faces[0], 4 * read.faces[1]));
+    choose_z_ = _mm256_add_epi8(spread, halves_of(4 * read.faces[2] - 16, 4 * read.faces[2] - 8));
+    weights_xy_ = _mm256_setr_m128(_mm_set1_ps(read.weights[0]), _mm_set1_ps(read.weights[1]));
+    weight_z_ = _mm256_set1_ps(read.weights[2]);
+  }
+
+  template <class SomeCorners, class Shares>
+  VOXREF_WIDE void add(const SomeCorners& corners, const Shares& shares) {
     for (size_t row = 0; row < 4; ++row) {
       const auto *a = &corners[2 * row], *b = &corners[2 * row + 1];
       const __m256 low = _mm256_set1_ps(shares[2 * row]), high = _mm256_set1_ps(shares[2 * row + 1]);
-      sum_xy = _mm256_add_ps(sum_xy, _mm256_mul_ps(shuffled(both(load_128(a)), xy), low));
-      sum_xy = _mm256_add_ps(sum_xy, _mm256_mul_ps(shuffled(both(load_128(b)), xy), high));
-      sum_z = _mm256_add_ps(sum_z,
-                            _mm256_mul_ps(shuffled(last_of<SomeCorners>(a, b), z), _mm256_blend_ps(low, high, 0xf0)));
+      sum_xy_ = _mm256_fmadd_ps(shuffled(both(load_128(a)), choose_xy_), low, sum_xy_);
+      sum_xy_ = _mm256_fmadd_ps(shuffled(both(load_128(b)), choose_xy_), high, sum_xy_);
+      sum_z_ =
+          _mm256_fmadd_ps(shuffled(last_of<SomeCorners>(a, b), choose_z_), _mm256_blend_ps(low, high, 0xf0), sum_z_);
     }
-    const __m256 xy_weights = _mm256_setr_m128(_mm_set1_ps(read.weights[0]), _mm_set1_ps(read.weights[1]));
-    const __m256 sum =
-        _mm256_add_ps(_mm256_mul_ps(sum_xy, xy_weights), _mm256_mul_ps(sum_z, _mm256_set1_ps(read.weights[2])));
-    return halves_added(sum) * (1.0f / 255.0f);
   }
+  VOXREF_WIDE Float4 total() const {
+    const __m256 sum = _mm256_fmadd_ps(sum_xy_, weights_xy_, _mm256_mul_ps(sum_z_, weight_z_));
+    return wide_detail::halves_added(sum) * (1.0f / 255.0f);
+  }
+
+ private:
   /// Bytes of a register, those of each half alike.
   VOXREF_WIDE static __m256i halves_of(size_t low, size_t high) {
     return _mm256_setr_m128i(_mm_set1_epi8(char(low)), _mm_set1_epi8(char(high)));
@@ -134,6 +112,45 @@ struct WideKernel {
     if constexpr (SomeCorners::rows_together) return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(last_of_a));
     const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(last_of_a));
     return both(_mm_unpacklo_epi64(low, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(&(*b)[4]))));
+  }
+
+  __m256i choose_xy_, choose_z_;
+  __m256 weights_xy_, weight_z_;
+  __m256 sum_xy_ = _mm256_setzero_ps(), sum_z_ = _mm256_setzero_ps();
+};
+
+/// The same two texels at a time: the results differ by rounding.
+struct WideKernel {
+  template <class SomeCorners, class Shares, class Read>
+  VOXREF_WIDE static Float4 interpolate(const SomeCorners& corners, const Shares& shares, const Read& read) {
+    if constexpr (wide_detail::is_directional<typename SomeCorners::Texel>)
+      return interpolate_pairs(corners, shares, read);
+    else
+      return PlainKernel::interpolate(corners, shares, read);
+  }
+
+  /// As PlainKernel::Sum.
+  template <class Texel, class Read>
+  using Sum = std::conditional_t<std::is_same_v<Texel, Rgba8> && std::is_same_v<Read, SquaredRead>, ByteSum,
+                                 LookupSum<WideKernel, Read>>;
+
+ private:
+  template <class SomeCorners, class Shares, class Read>
+  VOXREF_WIDE static Float4 interpolate_pairs(const SomeCorners& corners, const Shares& shares, const Read& read) {
+    using namespace wide_detail;
+    __m256 sums[3] = {_mm256_setzero_ps(), _mm256_setzero_ps(), _mm256_setzero_ps()};
+    for (size_t row = 0; row < 4; ++row) {
+      const __m256 share = _mm256_setr_m128(_mm_set1_ps(shares[2 * row]), _mm_set1_ps(shares[2 * row + 1]));
+      const auto &a = corners[2 * row], &b = corners[2 * row + 1];
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const size_t face = read.faces[axis];
+        sums[axis] = _mm256_fmadd_ps(value_of_pair<Read>(a[face], b[face]), share, sums[axis]);
+      }
+    }
+    __m256 sum = _mm256_mul_ps(sums[0], _mm256_set1_ps(read.weights[0]));
+    sum = _mm256_fmadd_ps(sums[1], _mm256_set1_ps(read.weights[1]), sum);
+    sum = _mm256_fmadd_ps(sums[2], _mm256_set1_ps(read.weights[2]), sum);
+    return halves_added(sum);
   }
 };
 

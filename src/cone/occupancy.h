@@ -99,6 +99,8 @@ class Occupancy {
   /// The stretch from p on, where `level` is empty. @param way voxels per unit of length @param inverse 1 / way
   Gap gap(int level, const Float4& p, const Float4& way, const Float4& inverse) const;
 
+  int top() const { return static_cast<int>(first_.size()) - 1; }  ///< coarsest level
+
   size_t bytes() const { return slots_.capacity() * sizeof(uint32_t) + blocks_.capacity() * sizeof(Block); }
 
  private:
@@ -111,7 +113,6 @@ class Occupancy {
     const Block& bits = blocks_[slots_[size_t(first_[size_t(level)] + block)]];
     return bits[size_t(cell.z & 7)] >> ((cell.x & 7) + 8 * (cell.y & 7)) & 1u;
   }
-  int top() const { return static_cast<int>(first_.size()) - 1; }
   /// Without levels. @param size texels of the base
   explicit Occupancy(const glm::ivec3& size) : last_(to_int4(size) - 1), blocks_(1) {}
   void add_level(const BitBlocks& cells);

@@ -36,7 +36,7 @@ glm::vec3 turned(const glm::mat3& frame, const Cone& cone) {
 template <class Texel>
 RawVoxelGatherer<Texel>::RawVoxelGatherer(const BasicPyramid<Texel>& pyramid, std::optional<float> max_distance)
     : pyramid_(pyramid), occupied_(pyramid), cones_(voxel_cones(published_cones)) {
-  steps_ = steps_of(pyramid.grid, cones_.cones.front().tan_half_angle, pyramid.levels.size(), max_distance);
+  steps_ = {steps_of(pyramid.grid, cones_.cones.front().tan_half_angle, pyramid.levels.size(), max_distance), 1.0f};
 }
 
 template <class Texel>

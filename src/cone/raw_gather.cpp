@@ -18,19 +18,19 @@ RawGatherer<Texel>::RawGatherer(const BasicPyramid<Texel>& pyramid, ConeSet diff
   // Beyond the box's diagonal every cone has left it.
   end_ =
       options.cone.max_distance ? *options.cone.max_distance * side_ : grid.voxel * glm::length(glm::vec3(grid.size));
-  for (const Cone& cone : diffuse_.cones) diffuse_steps_.push_back(cone_steps(cone.tan_half_angle, stepping(end_)));
-  shadow_steps_ = cone_steps(options.shadow_aperture, stepping(std::max(options.farthest_light, side_)));
+  for (const Cone& cone : diffuse_.cones) diffuse_steps_.push_back(steps(cone.tan_half_angle, end_));
+  shadow_steps_ = steps(options.shadow_aperture, std::max(options.farthest_light, side_));
 }
 
 template <class Texel>
-ConeStepping RawGatherer<Texel>::stepping(float end) const {
+ConeSteps RawGatherer<Texel>::steps(float tan_half_angle, float end) const {
   ConeStepping stepping;
   stepping.unit = unit_;
   stepping.step = options_.cone.step;
   stepping.end = end;
   stepping.top = static_cast<int>(pyramid_.levels.size());
   stepping.falloff = options_.ao.enabled ? options_.ao.falloff / side_ : 0.0f;
-  return stepping;
+  return {cone_steps(tan_half_angle, stepping), pyramid_.grid.voxel};
 }
 
 template <class Texel>
@@ -65,7 +65,7 @@ template <class Texel>
 glm::vec3 RawGatherer<Texel>::specular(const GatherPoint& point, const glm::vec3& to_viewer,
                                        float tan_half_angle) const {
   const glm::vec3 mirrored = glm::normalize(glm::reflect(-to_viewer, point.shading_normal));
-  return march(point, mirrored, cone_steps(tan_half_angle, stepping(end_))).radiance;
+  return march(point, mirrored, steps(tan_half_angle, end_)).radiance;
 }
 
 template <class Texel>

@@ -33,7 +33,7 @@ class RawGatherer {
 
  private:
   /// @param end world units
-  ConeStepping stepping(float end) const;
+  ConeSteps steps(float tan_half_angle, float end) const;
   bool misses_box(const GatherPoint& point, const glm::vec3& direction) const;
   RawCone march(const GatherPoint& point, const glm::vec3& direction, const ConeSteps& steps) const;
 

@@ -28,14 +28,29 @@ std::vector<ConeStep> cone_steps(float tan_half_angle, const ConeStepping& stepp
   return steps;
 }
 
-ConeSteps::ConeSteps(std::vector<ConeStep> steps) : steps_(std::move(steps)) {
-  if (steps_.empty()) return;
-  const size_t padded = (steps_.size() + lanes - 1) / lanes * lanes;
-  for (size_t i = 0; i < padded; ++i) {
-    const ConeStep& step = steps_[std::min(i, steps_.size() - 1)];
+ConeSteps::ConeSteps(std::vector<ConeStep> steps, float voxel) : steps_(std::move(steps)) {
+  const auto padded = [](size_t count) { return (count + lanes - 1) / lanes * lanes; };
+  for (size_t i = 0; !steps_.empty() && i < padded(size()); ++i) {
+    const ConeStep& step = steps_[std::min(i, size() - 1)];
     distances_.push_back(step.distance);
     coarsest_.push_back(step.coarsest());
+    coarser_shares_.push_back(step.fraction > 0.0f ? step.fraction : 1.0f);
   }
+  if (!narrow()) return;
+  for (size_t begin = 0; begin < size(); begin += lanes) add_group(begin, std::min(begin + lanes, size()), voxel);
+  group_distances_.resize(padded(group_distances_.size()), group_distances_.back());
+  group_levels_.resize(padded(group_levels_.size()), group_levels_.back());
+}
+
+// In a level at least as coarse as the samples' own, whose texels are as long as the group, each sample lies half a
+// texel from the group's middle at the most along any axis. The eight texels that it reads are then among the 4^3 that
+// the eight of the next level around the middle are made of.
+void ConeSteps::add_group(size_t begin, size_t end, float voxel) {
+  const float first = steps_[begin].distance, last = steps_[end - 1].distance;
+  constexpr float rounding = 1.001f;  // of positions
+  const int as_long = static_cast<int>(std::ceil(std::log2(std::max(rounding * (last - first) / voxel, 1.0f))));
+  group_distances_.push_back(0.5f * (first + last));
+  group_levels_.push_back(std::max(as_long, steps_[end - 1].coarsest()) + 1);
 }
 
 namespace {
@@ -47,24 +62,28 @@ namespace {
 template <class Visit>
 inline void for_each_sample(const Int4& last, const Occupancy& occupied, const ConeAxis& axis, const ConeSteps& steps,
                             float end, const Visit& visit) {
-  constexpr size_t lanes = ConeSteps::lanes, most_groups = 4;
+  constexpr size_t lanes = ConeSteps::lanes, most_groups = lanes;
   const Float4 &o = axis.origin, &w = axis.way;
   for (size_t begin = 0; begin < steps.size() && steps[begin].distance <= end; begin += lanes * most_groups) {
     const size_t count = std::min(lanes * most_groups, steps.size() - begin);
-    uint32_t found[most_groups];
-    for (size_t k = 0; lanes * k < count; ++k) {
+    uint32_t found[most_groups] = {}, groups = ~0u;
+    if (steps.narrow()) {
       Float8 s;
       Int8 level;
-      steps.load(begin + lanes * k, s, level);
+      steps.load_groups(begin / lanes, s, level);
+      level = level < occupied.top() ? level : occupied.top();  // one texel, of all there is
+      groups = occupied(level, o[0] + s * w[0], o[1] + s * w[1], o[2] + s * w[2]);
+    }
+    for (size_t k = 0; lanes * k < count; ++k) {
+      if (!(groups >> k & 1u) || steps[begin + lanes * k].distance > end) continue;
+      const auto [s, level, ignored] = steps.load(begin + lanes * k);
       found[k] = occupied(level, o[0] + s * w[0], o[1] + s * w[1], o[2] + s * w[2]);
       if (count < lanes * (k + 1)) found[k] &= (1u << (count - lanes * k)) - 1;
     }
     for (size_t k = 0; lanes * k < count; ++k) {
       if (found[k] == 0) continue;
-      Float8 s;
-      Int8 level;
-      steps.load(begin + lanes * k, s, level);
-      const RawSamples samples(last, level, o[0] + s * w[0], o[1] + s * w[1], o[2] + s * w[2]);
+      const auto [s, level, share] = steps.load(begin + lanes * k);
+      const RawSamples samples(last, level, share, o[0] + s * w[0], o[1] + s * w[1], o[2] + s * w[2]);
       for (uint32_t bits = found[k]; bits != 0; bits &= bits - 1) {
         const auto lane = size_t(std::countr_zero(bits));
         const ConeStep& step = steps[begin + lanes * k + lane];

@@ -36,22 +36,42 @@ std::vector<ConeStep> cone_steps(float tan_half_angle, const ConeStepping& stepp
 class ConeSteps {
  public:
   static constexpr size_t lanes = 8;
+  struct Lanes {
+    Float8 distance;
+    Int8 coarsest;         ///< ConeStep::coarsest()
+    Float8 coarser_share;  ///< what it counts beside the level below
+  };
 
   ConeSteps() = default;
-  ConeSteps(std::vector<ConeStep> steps);
+  /// @param voxel length of the base's, in the unit of the steps' distances
+  ConeSteps(std::vector<ConeStep> steps, float voxel);
 
   size_t size() const { return steps_.size(); }
   const ConeStep& operator[](size_t i) const { return steps_[i]; }
   /// Of the samples from i on, i a multiple of `lanes`; what lies beyond the last repeats it.
-  void load(size_t i, Float8& distance, Int8& coarsest) const {
-    std::memcpy(&distance, distances_.data() + i, sizeof distance);
-    std::memcpy(&coarsest, coarsest_.data() + i, sizeof coarsest);
+  Lanes load(size_t i) const {
+    Lanes group;
+    std::memcpy(&group.distance, distances_.data() + i, sizeof group.distance);
+    std::memcpy(&group.coarsest, coarsest_.data() + i, sizeof group.coarsest);
+    std::memcpy(&group.coarser_share, coarser_shares_.data() + i, sizeof group.coarser_share);
+    return group;
+  }
+
+  /// Whether so many samples lie so closely that it pays to ask for eight at once whether they find anything.
+  bool narrow() const { return steps_.size() > lanes * lanes; }
+  /// Where to ask for the samples from 8 i on, for those from 8 (i + 1) on, ..., i a multiple of `lanes`: when a
+  /// look-up at this distance finds nothing in this level, nor does any of the eight in theirs. Of narrow() steps.
+  void load_groups(size_t i, Float8& distance, Int8& level) const {
+    std::memcpy(&distance, group_distances_.data() + i, sizeof distance);
+    std::memcpy(&level, group_levels_.data() + i, sizeof level);
   }
 
  private:
+  void add_group(size_t begin, size_t end, float voxel);
+
   std::vector<ConeStep> steps_;
-  std::vector<float> distances_;
-  std::vector<int32_t> coarsest_;
+  std::vector<float> distances_, coarser_shares_, group_distances_;
+  std::vector<int32_t> coarsest_, group_levels_;
 };
 
 /// Where a cone runs: at distance s from its start it is at origin + s way.

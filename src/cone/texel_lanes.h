@@ -27,9 +27,9 @@ struct LaneShares {
 };
 
 /// Of volumes whose border texels go on for ever. @param last texel of the base along each axis; level k has that many
-/// shifted right by k @param level 0 is the base @param x, y, z finite; voxels
+/// shifted right by k @param level 0 is the base @param x, y, z finite; voxels @param whole of the eight shares
 inline void locate_clamped(const Int4& last, const Int8& level, const Float8& x, const Float8& y, const Float8& z,
-                           TexelLanes& at) {
+                           const Float8& whole, TexelLanes& at) {
   const Float8 scale = reinterpret_cast<Float8>((127 - level) << 23);
   const Float8* p[3] = {&x, &y, &z};
   Int8 low[3], grid[3];
@@ -40,10 +40,10 @@ inline void locate_clamped(const Int4& last, const Int8& level, const Float8& x,
     Float8 q = *p[axis] * scale - 0.5f;
     q = q > 0.0f ? q : Float8{};
     q = q < high ? q : high;
-    const Int8 whole = __builtin_convertvector(q, Int8);
+    const Int8 below = __builtin_convertvector(q, Int8);
     // At the end the next texel, which does not exist, would count nothing: the one before does so as well. Along an
     // axis of one texel the next lies outside of the volume, but in the same brick.
-    low[axis] = whole + ((whole == end) & (end > 0));  // true is -1
+    low[axis] = below + ((below == end) & (end > 0));  // true is -1
     f[axis] = q - __builtin_convertvector(low[axis], Float8);
     g[axis] = 1.0f - f[axis];
     grid[axis] = (end >> 3) + 1;
@@ -54,6 +54,7 @@ inline void locate_clamped(const Int4& last, const Int8& level, const Float8& x,
   std::memcpy(at.brick.data(), &brick, sizeof brick);
   std::memcpy(at.texel.data(), &texel, sizeof texel);
   std::memcpy(at.inner.data(), &inner, sizeof inner);
+  f[2] *= whole, g[2] *= whole;
   for (size_t row = 0; row < 4; ++row) {
     const Float8 share = (row & 1 ? f[1] : g[1]) * (row & 2 ? f[2] : g[2]);
     const Float8 at_low = share * g[0], at_high = share * f[0];

@@ -38,7 +38,8 @@ TEST_CASE("A look-up finds something where, and only where, the occupancy of its
   for (int i = 0; i < 20000; ++i) {
     const glm::vec3 p(anywhere(random), anywhere(random), anywhere(random));
     for (int level = 0; level <= 3; ++level) {
-      const RawSamples samples(to_int4(size) - 1, Int8{} + level, Float8{} + p.x, Float8{} + p.y, Float8{} + p.z);
+      const RawSamples samples(to_int4(size) - 1, Int8{} + level, Float8{} + 1.0f, Float8{} + p.x, Float8{} + p.y,
+                               Float8{} + p.z);
       const bool found = sample_raw<PlainKernel>(pyramid, samples, 0, {0.0f, level, 0.0f, 1.0f}, read)[3] != 0.0f;
       (found ? full : empty)++;
       // Where the border goes on for ever, a cell at the border is read at its edge alone.

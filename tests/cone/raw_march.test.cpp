@@ -135,7 +135,7 @@ TEST_CASE("The march through bricks of bytes is that of every texel on its own",
         occlusion += (1.0 - occlusion) * c.a * double(step.occlusion);
         if (sum.a >= 1.0) break;
       }
-      const RawCone cone = march_raw(pyramid, occupied, ConeAxis(start, direction), steps);
+      const RawCone cone = march_raw(pyramid, occupied, ConeAxis(start, direction), {steps, 1.0f});
       constexpr double rounding = 1e-4;  // positions of up to 36 in float32, over up to a hundred samples
       CHECK(glm::distance(glm::dvec3(cone.radiance), glm::dvec3(sum)) < rounding);
       CHECK(std::abs(cone.opacity - sum.a) < rounding);
@@ -169,8 +169,8 @@ TEST_CASE("Bytes and floats of the same values march alike", "[raw_march]") {
   const auto steps = cone_steps(0.57735f, stepping(2.0f, 0.5f, 15.0f, 4));
   const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.5f, 0.8f));
   const ConeAxis axis({8.0f, 12.0f, 2.0f}, direction);
-  const RawCone a = march_raw(bytes, Occupancy(bytes), axis, steps);
-  const RawCone b = march_raw(floats, Occupancy(floats), axis, steps);
+  const RawCone a = march_raw(bytes, Occupancy(bytes), axis, {steps, 1.0f});
+  const RawCone b = march_raw(floats, Occupancy(floats), axis, {steps, 1.0f});
   CHECK(a.opacity > 0.0f);
   for (int c = 0; c < 3; ++c) CHECK(a.radiance[c] == Approx(b.radiance[c]).epsilon(1e-6));
 }
@@ -181,14 +181,14 @@ TEST_CASE("Raw opacity depends on the step: half-opaque fog lets .5, .25, .0625,
   for (const int samples : {1, 2, 4, 10}) {
     std::vector<ConeStep> steps;
     for (int i = 0; i < samples; ++i) steps.push_back({float(i) / float(samples), 0, 0.0f, 1.0f});
-    const RawCone cone = march_raw(fog, Occupancy(fog), ConeAxis({8.0f, 16.0f, 16.0f}, along_x), steps);
+    const RawCone cone = march_raw(fog, Occupancy(fog), ConeAxis({8.0f, 16.0f, 16.0f}, along_x), {steps, 1.0f});
     CHECK(1.0f - cone.opacity == Approx(std::pow(0.5f, float(samples))).epsilon(1e-5));
   }
 }
 
 TEST_CASE("Outside the volume a raw cone goes on seeing its edge", "[raw_march]") {
   const Pyramid edge = slab(31, 32, 0.5f);
-  const std::vector<ConeStep> far = {{100.0f, 0, 0.0f, 1.0f}};
+  const ConeSteps far({{100.0f, 0, 0.0f, 1.0f}}, 1.0f);
   const Occupancy occupied(edge);
   CHECK(march_raw(edge, occupied, ConeAxis({16.0f, 16.0f, 16.0f}, along_x), far).opacity == 0.5f);
   CHECK(march_raw(edge, occupied, ConeAxis({16.0f, 16.0f, 16.0f}, -along_x), far).opacity == 0.0f);
@@ -196,7 +196,7 @@ TEST_CASE("Outside the volume a raw cone goes on seeing its edge", "[raw_march]"
 
 TEST_CASE("A shadow cone multiplies opacity by its gain, and ends at the light", "[raw_march]") {
   const Pyramid thin = slab(16, 17, 0.25f);
-  const std::vector<ConeStep> steps = {{1.0f, 0, 0.0f, 1.0f}, {8.5f, 0, 0.0f, 1.0f}, {12.0f, 0, 0.0f, 1.0f}};
+  const ConeSteps steps({{1.0f, 0, 0.0f, 1.0f}, {8.5f, 0, 0.0f, 1.0f}, {12.0f, 0, 0.0f, 1.0f}}, 1.0f);
   const glm::vec3 start(8.0f, 16.0f, 16.0f);
   const ConeAxis forth(start, along_x), back(start, -along_x);
   const Occupancy occupied(thin);
@@ -229,9 +229,9 @@ TEST_CASE("A shadow cone that skips empty space sees what one sees that does not
                      .a;
     shadowed += blocked > 0.0;
     // Rounding of positions up to 36 in float32, over a hundred samples.
-    CHECK(march_raw_shadow(pyramid, occupied, axis, steps, 30.0f, 0.25f) == Approx(1.0 - blocked).margin(1e-4));
+    CHECK(march_raw_shadow(pyramid, occupied, axis, {steps, 1.0f}, 30.0f, 0.25f) == Approx(1.0 - blocked).margin(1e-4));
     // Whether there is any opacity at all is told by a look-up, not by its rounding.
-    const float hard = march_raw_shadow(pyramid, occupied, axis, steps, 30.0f, infinity);
+    const float hard = march_raw_shadow(pyramid, occupied, axis, {steps, 1.0f}, 30.0f, infinity);
     if (blocked > 1e-4) CHECK(hard == 0.0f);
     if (blocked == 0.0) CHECK(hard == 1.0f);
   }

@@ -20,7 +20,7 @@ double raw_transmittance(const Pyramid& pyramid, const Occupancy& occupied, cons
   std::vector<ConeStep> steps;
   constexpr float end = 24.0f;  // beyond the layer
   for (int i = 0; float(i) * step <= end; ++i) steps.push_back({float(i) * step, 0, 0.0f, 1.0f});
-  return 1.0 - double(march_raw(pyramid, occupied, ConeAxis(start, {1.0f, 0.0f, 0.0f}), steps).opacity);
+  return 1.0 - double(march_raw(pyramid, occupied, ConeAxis(start, {1.0f, 0.0f, 0.0f}), {steps, 1.0f}).opacity);
 }
 
 }  // namespace
@@ -99,7 +99,8 @@ Approach approach(float step) {
   const Pyramid pyramid = wall_pyramid(side, 1, 1.0f);
   const Occupancy occupied(pyramid);
   const Medium medium = make_medium(wall_pyramid(side, 1, 1.0f));
-  const ConeSteps steps = cone_steps(tangent, {unit, step, float(side), static_cast<int>(pyramid.levels.size()), 0.0f});
+  const ConeSteps steps(cone_steps(tangent, {unit, step, float(side), static_cast<int>(pyramid.levels.size()), 0.0f}),
+                        1.0f);
   Approach result;
   for (int i = 0; i < places; ++i) {
     const float distance = nearest + float(i) * apart;
