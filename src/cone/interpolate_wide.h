@@ -121,18 +121,24 @@ class ByteSum {
 
 /// The same two texels at a time: the results differ by rounding.
 struct WideKernel {
-  template <class SomeCorners, class Shares, class Read>
-  VOXREF_WIDE static Float4 interpolate(const SomeCorners& corners, const Shares& shares, const Read& read) {
-    if constexpr (wide_detail::is_directional<typename SomeCorners::Texel>)
-      return interpolate_pairs(corners, shares, read);
-    else
-      return PlainKernel::interpolate(corners, shares, read);
-  }
-
   /// As PlainKernel::Sum.
   template <class Texel, class Read>
   using Sum = std::conditional_t<std::is_same_v<Texel, Rgba8> && std::is_same_v<Read, SquaredRead>, ByteSum,
                                  LookupSum<WideKernel, Read>>;
+
+  template <class SomeCorners, class Shares, class Read>
+  VOXREF_WIDE static Float4 interpolate(const SomeCorners& corners, const Shares& shares, const Read& read) {
+    using Texel = typename SomeCorners::Texel;
+    if constexpr (std::is_same_v<Texel, Directional<Rgba8>> && std::is_same_v<Read, SquaredRead>) {
+      ByteSum sum(read);
+      sum.add(corners, shares);
+      return sum.total();
+    } else if constexpr (wide_detail::is_directional<Texel>) {
+      return interpolate_pairs(corners, shares, read);
+    } else {
+      return PlainKernel::interpolate(corners, shares, read);
+    }
+  }
 
  private:
   template <class SomeCorners, class Shares, class Read>
