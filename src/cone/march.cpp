@@ -79,8 +79,11 @@ class Path {
     float end;         ///< it lasts until there
   };
   const Straight& straight(float s) const { return s < first_.end ? first_ : last_; }
-  /// Distance at which the march is this high over the own plane, when it has ended its descent.
-  float distance_at(float height) const { return (height - (descent_ > 0.0f ? 0.0f : height_)) * inverse_rise_; }
+  /// Distance from which on the march is this high over the own plane; while it descends it stays as high as it began.
+  float distance_at(float height) const {
+    if (height <= height_) return 0.0f;
+    return (height - (descent_ > 0.0f ? 0.0f : height_)) * inverse_rise_;
+  }
 
  private:
   float given_up(float s) const { return std::min(s * descent_, 1.0f); }  ///< share of the lift
