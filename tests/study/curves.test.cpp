@@ -49,10 +49,21 @@ TEST_CASE("A series takes the rows that it is asked for, and those that hold num
   table.add({2.0, 20.0, 0.2});
   table.add({1.0, 30.0, Cell{}});
   CHECK(curve(table, "x", "y", "").points.size() == 2);
+  table.add({3.0, 40.0, std::nan("")});  // was measured, and went wrong: no curve shall hide it
+  CHECK(std::isnan(curve(table, "x", "y", "").points.back().y));
   const Series second = curve(table, "x", "y", "", ChartStyle::dashes, {"set", 2.0});
   REQUIRE(second.points.size() == 1);
   CHECK(second.points[0].x == 20.0);
   CHECK(second.points[0].y == 0.2);
+}
+
+TEST_CASE("The worst of several numbers is the largest, or none", "[stability]") {
+  const double nan = std::nan("");
+  CHECK(worst_of({1.0, 3.0, 2.0}) == 3.0);
+  CHECK(worst_of({-2.0, -1.0}) == -1.0);
+  CHECK(std::isnan(worst_of({nan, 1.0})));
+  CHECK(std::isnan(worst_of({1.0, nan, 2.0})));
+  CHECK(std::isnan(worst_of({1.0, nan})));
 }
 
 TEST_CASE("The ball's light in closed form is the integral over the hemisphere", "[stability]") {

@@ -23,7 +23,8 @@ Series curve(const Table& table, const std::string& x, const std::string& y, con
              const std::pair<std::string, double>& where) {
   Series series{title, style};
   for (size_t i = 0; i < table.rows.size(); ++i)
-    if ((where.first.empty() || table.number(i, where.first) == where.second) && !std::isnan(table.number(i, y)))
+    if ((where.first.empty() || table.number(i, where.first) == where.second) &&
+        std::holds_alternative<double>(table.rows[i][table.column(y)]))
       series.points.push_back(chart_point(table.number(i, x), table.number(i, y)));
   return series;
 }
@@ -78,6 +79,7 @@ std::vector<double> harmonics(std::span<const double> values, size_t periods, si
 }
 
 double breaks_at(std::span<const ChartPoint> points, double limit) {
+  if (points.empty()) return std::numeric_limits<double>::quiet_NaN();
   for (size_t i = 0; i < points.size(); ++i) {
     if (std::isnan(points[i].y)) return std::numeric_limits<double>::quiet_NaN();
     if (points[i].y <= limit) continue;

@@ -11,7 +11,7 @@ namespace voxref {
 
 ChartPoint chart_point(double x, double y, const std::string& label = {}, double error = 0.0);
 
-/// Columns of a table as a series; both hold numbers. Rows where `y` holds none are left out.
+/// Columns of a table as a series; both hold numbers. Rows where `y` is empty are left out.
 /// @param where a column and the number that it must hold; no column: all rows
 Series curve(const Table& table, const std::string& x, const std::string& y, const std::string& title,
              ChartStyle style = ChartStyle::line_points, const std::pair<std::string, double>& where = {});
@@ -37,7 +37,7 @@ std::vector<double> harmonics(std::span<const double> values, size_t periods, si
 
 /// Where a curve first rises above `limit`: between the last point that does not and the first that does, linearly.
 /// @param points from where the method works to where it fails @returns the last x where it never does, the first where
-/// it does from the start; NaN where a value before that is not a number
+/// it does from the start; NaN where a value before that is not a number, or there are no points
 double breaks_at(std::span<const ChartPoint> points, double limit);
 
 }  // namespace voxref

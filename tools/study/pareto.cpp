@@ -238,10 +238,11 @@ Section pareto_section(const StudyScene& scene, const ParetoGrid& grid, const Pr
 }
 
 StudyResult run_pareto(const StudyRequest& request) {
+  // Steps of a quarter would take as long as all of this, and change no error by a hundredth of it.
   ParetoGrid grid{{{32, 64, 128, 256},
                    {0, 1, 2, std::nullopt},
                    {Storage::unorm8, Storage::float32},
-                   {1.0f, 0.5f, 0.25f},
+                   {1.0f, 0.5f},
                    {4, 6, 9, 16, 32, 64}},
                   192,
                   1024,

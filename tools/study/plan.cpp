@@ -15,8 +15,9 @@ namespace {
 // the coarsest resolution's own error may hide what counts at finer ones.
 constexpr double irrelevant = 0.04, hidden = 0.5;
 // How far predicted errors may be over the budget: of settings that are measured first; of those that are measured
-// where nothing else is left, and on the way; and of the last resolution's, for the climb to be worth its cost.
-constexpr double slack = 1.1, last_slack = 1.3, hope = 1.7;
+// where nothing else is left; of those whose volume is there anyway, so that they cost little; and of the last
+// resolution's, for the climb to be worth its cost.
+constexpr double slack = 1.1, last_slack = 1.2, volume_slack = 1.3, hope = 1.7;
 
 /// The search's state: what has been measured, each setting once, and what is left to choose from.
 class Search {
@@ -125,7 +126,7 @@ class Search {
   void measure_volume(const SettingPoint& wanted) {
     SettingPoint point = wanted;
     for (point[cone_axis] = 0; point[cone_axis] <= wanted[cone_axis]; ++point[cone_axis])
-      if ((point == wanted || predict(point) <= last_slack * budget_) && measure(point).rel_error <= budget_) return;
+      if ((point == wanted || predict(point) <= volume_slack * budget_) && measure(point).rel_error <= budget_) return;
   }
 
   /// Of what was measured at the finest resolution up to that of `point`, above the coarsest, the setting that is the

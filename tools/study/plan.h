@@ -41,10 +41,10 @@ struct PlanSearch {
 ///    dropped, and all that is left is measured.
 /// 2. Any other setting is predicted: its image is that at the coarsest resolution plus what its resolution changed in
 ///    the image of the nearest setting that was measured at both. The cheapest that promises to be within 1.1 times the
-///    budget is measured, with those of fewer cones in the same volume, and improves the predictions; until none is
-///    left that would be cheaper than what was found. Where nothing promises or was found, resolutions that were
-///    reached are searched up to 1.3 times the budget, and then the most promising setting of the next finer one is
-///    measured, unless errors fall too slowly to come near the budget.
+///    budget is measured, with those of fewer cones in the same volume up to 1.3 times, and improves the predictions;
+///    until none is left that would be cheaper than what was found. Where nothing promises or was found, resolutions
+///    that were reached are searched up to 1.2 times the budget, and then the most promising setting of the next finer
+///    one is measured, unless errors fall too slowly to come near the budget.
 /// 3. The steps next to the best are measured: `cheaper` and `better`.
 PlanSearch search_plan(const SettingSpace& space, double budget, const PlanOracle& oracle);
 

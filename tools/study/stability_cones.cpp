@@ -155,7 +155,7 @@ Failure specular_blur() {
     const double blur = std::sqrt(squares), theory = predicted_width(diameter), truth = diameter / 4.0;
     failure.table.add({degrees, diameter, blur, theory, truth, blur / truth});
     from_wide.insert(from_wide.begin(), chart_point(degrees, blur / truth));
-    off = std::max(off, std::abs(blur / theory - 1.0));
+    off = worst_of({off, std::abs(blur / theory - 1.0)});
     if (degrees == 9.0 || degrees == 27.0 || degrees == 45.0)
       failure.thresholds.push_back({fmt::format("specular_blur_{:g}", degrees), blur / truth, "",
                                     "blur of an edge over that of the cone's own disc"});
@@ -235,15 +235,15 @@ Failure cone_gaps() {
     twice.points.push_back(chart_point(x, covers.overlap));
     for (Chart* chart : {&light, &gaps}) chart->x.categories.push_back(set.name);
     if (!std::isnan(set.factor)) {
-      off = std::max(off, std::abs(factor - set.factor));
+      off = worst_of({off, std::abs(factor - set.factor)});
       continue;
     }
-    worst = std::max(worst, std::abs(factor - 1.0));
-    gap = std::max(gap, 1.0 - covers.covered);
-    overlap = std::max(overlap, covers.overlap);
+    worst = worst_of({worst, std::abs(factor - 1.0)});
+    gap = worst_of({gap, 1.0 - covers.covered});
+    overlap = worst_of({overlap, covers.overlap});
     if (set.cones.size() >= 128)
       gap_off =
-          std::max({gap_off, std::abs(1.0 - covers.covered - square_gap()), std::abs(covers.overlap - square_gap())});
+          worst_of({gap_off, std::abs(1.0 - covers.covered - square_gap()), std::abs(covers.overlap - square_gap())});
   }
   const auto last = double(light.x.categories.size()) - 1.0;
   theory.color_of = factors.title;

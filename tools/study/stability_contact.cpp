@@ -65,12 +65,12 @@ Failure contact_gap() {
       failure.table.add({double(cones), double(start), own, error_1, error_4});
       from_far.insert(from_far.begin(), chart_point(double(start), own));
       if (start != shipped) continue;
-      self_lighting = std::max(self_lighting, own);
-      gap_1 = std::max(gap_1, std::abs(error_1));
-      gap_4 = std::max(gap_4, std::abs(error_4));
+      self_lighting = worst_of({self_lighting, own});
+      gap_1 = worst_of({gap_1, std::abs(error_1)});
+      gap_4 = worst_of({gap_4, std::abs(error_4)});
     }
     constexpr double seen = 0.01;
-    needed = std::max(needed, breaks_at(from_far, seen));
+    needed = worst_of({needed, breaks_at(from_far, seen)});
     const std::pair<std::string, double> these{"cones", cones};
     own_light.series.push_back(
         curve(failure.table, "start", "self_lighting", fmt::format("{} cones", cones), ChartStyle::line_points, these));

@@ -103,8 +103,8 @@ Failure leak_by_level() {
         const double marched = extinction_leak(medium, level, degrees);
         failure.table.add(
             {double(thickness), double(level), double(degrees), plain, 1.0 - fraction, seen, predicted, marched});
-        if (degrees <= 75) worst = std::max(worst, marched);
-        off = std::max({off, std::abs(seen - predicted), std::abs(plain - 1.0 + fraction)});
+        if (degrees <= 75) worst = worst_of({worst, marched});
+        off = worst_of({off, std::abs(seen - predicted), std::abs(plain - 1.0 + fraction)});
       }
   };
   measure(1, {1, 2, 3, 4}, 5);
@@ -153,8 +153,9 @@ Failure leak_by_level() {
   const auto breaking_angle = [&](const std::string& column) {
     double least = 90.0;
     for (const int level : {1, 2, 3, 4})
-      least = std::min(
-          least, breaks_at(curve(by_angle, "angle", column, "", ChartStyle::points, {"level", level}).points, leaky));
+      least = -worst_of(
+          {-least,
+           -breaks_at(curve(by_angle, "angle", column, "", ChartStyle::points, {"level", level}).points, leaky)});
     return least;
   };
   failure.thresholds = {
@@ -191,9 +192,9 @@ Failure leak_between_rooms() {
       const double through = leak(scene, ConeOpacity::extinction);
       const double raw = degrees == 0.0f ? leak(scene, ConeOpacity::raw) : std::nan("");
       failure.table.add({double(degrees), double(voxels), through, raw});
-      worst = std::max(worst, through);
-      if (voxels == 4.0f) thick = std::max(thick, through);
-      if (degrees == 0.0f) raw_worst = std::max(raw_worst, raw);
+      worst = worst_of({worst, through});
+      if (voxels == 4.0f) thick = worst_of({thick, through});
+      if (degrees == 0.0f) raw_worst = worst_of({raw_worst, raw});
     }
   }
   Chart chart{"stability_leak_rooms",

@@ -105,7 +105,7 @@ Failure opposite_normals() {
     const double shared = std::max(0.0, 1.0 - double(t));
     failure.table.add({double(t), sides.cancelled, sides.lit, 1.0 - 0.5 * shared, sides.dark, 0.5 * shared,
                        theirs.lit / published_unit, theirs.dark / published_unit});
-    off = std::max({off, std::abs(sides.lit - 1.0 + 0.5 * shared), std::abs(sides.dark - 0.5 * shared),
+    off = worst_of({off, std::abs(sides.lit - 1.0 + 0.5 * shared), std::abs(sides.dark - 0.5 * shared),
                     std::abs(sides.cancelled - shared)});
     from_thick.insert(from_thick.begin(), chart_point(double(t), sides.dark));
   }

@@ -52,7 +52,7 @@ Failure rotation() {
       for (const int cones : {6, 32}) {
         const double shown = shown_by_turned_room(turn_about(axis, degrees), cones);
         row.emplace_back(shown);
-        lost = std::max(lost, std::abs(1.0 - shown));
+        lost = worst_of({lost, std::abs(1.0 - shown)});
       }
     failure.table.add(std::move(row));
   }
@@ -80,7 +80,7 @@ Failure scale() {
     const Scene box = scaled(cornell_box(CornellLight::point), factor);
     const double ratio = mean_luminance(trace(box, small_settings(box_voxels), box_width)) / usual;
     failure.table.add({double(factor), ratio, 1e6 * (ratio - 1.0)});
-    off = std::max(off, std::abs(ratio - 1.0));
+    off = worst_of({off, std::abs(ratio - 1.0)});
   }
   failure.charts.push_back(
       {"stability_scale",
@@ -115,7 +115,7 @@ Failure distance() {
         reach = std::max(reach, std::log10(double(away)));
       else
         ++silent;
-      if (away <= 1e3f) off = std::max(off, std::abs(ratio - 1.0));
+      if (away <= 1e3f) off = worst_of({off, std::abs(ratio - 1.0)});
     } catch (const Error& error) {
       failure.table.add({double(away), rounding, Cell{}, Cell{}, std::string("refused: ") + error.what()});
     }

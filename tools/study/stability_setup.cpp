@@ -1,5 +1,6 @@
 #include "study/stability_setup.h"
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
@@ -13,6 +14,13 @@
 #include "voxel/mipmap.h"
 
 namespace voxref {
+
+double worst_of(std::initializer_list<double> values) {
+  double worst = *values.begin();
+  for (const double value : values)
+    if (!std::isnan(worst) && !(value <= worst)) worst = value;
+  return worst;
+}
 
 SurfaceGrid wall(int side, int thickness, float opacity) {
   SurfaceGrid surfaces;

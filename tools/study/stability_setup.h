@@ -1,11 +1,15 @@
 #pragma once
 #include <glm/mat3x3.hpp>
+#include <initializer_list>
 
 #include "cone/gather.h"
 #include "make_scenes/mesh.h"
 #include "pipeline.h"
 
 namespace voxref {
+
+/// The largest; NaN where any is, which std::max may pass over.
+double worst_of(std::initializer_list<double> values);
 
 // What several curves of stability are measured on.
 

@@ -60,13 +60,13 @@ Failure step_dependence() {
       const double left = 1.0 - double(march(medium, start, {1.0f, 0.0f, 0.0f}, 0.0f, {}, {.step = step}).opacity);
       log_extinction += std::log(left) / offsets;
       log_raw += std::log(raw_transmittance(raw, occupied, start, step)) / offsets;
-      error = std::max(error, std::abs(left - 0.5));
+      error = worst_of({error, std::abs(left - 0.5)});
     }
     const double theory = std::exp((2.0 * std::log(2.0) - 2.0) / double(step));
     failure.table.add(
         {double(step), std::exp(log_extinction), error, std::exp(log_raw), theory, std::pow(0.5, 1.0 / double(step))});
-    if (step <= 1.0f) worst = std::max(worst, error);
-    off_theory = std::max(off_theory, std::abs(log_raw / std::log(theory) - 1.0));
+    if (step <= 1.0f) worst = worst_of({worst, error});
+    off_theory = worst_of({off_theory, std::abs(log_raw / std::log(theory) - 1.0)});
     errors.push_back(chart_point(double(step), error));
   }
   failure.charts.push_back(

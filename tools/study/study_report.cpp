@@ -96,7 +96,7 @@ std::string page(const fs::path& folder, std::span<const StudyResult> results, c
 
 /// How a figure came about, as it stands on it.
 std::string made_by(const StudyResult& result, const Section& section) {
-  return fmt::format("{}  ({:.{}f} s)", result.command, section.seconds, section.seconds < 10.0 ? 1 : 0);
+  return fmt::format("{}  ({:.{}g} s)", result.command, section.seconds, section.seconds < 10.0 ? 2 : 6);
 }
 
 }  // namespace

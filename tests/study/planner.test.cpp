@@ -1,0 +1,155 @@
+#include "study/planner.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "make_scenes/builders.h"
+#include "study/study_scenes.h"
+
+using namespace voxref;
+
+namespace {
+
+/// Measures every point: the slow, obviously right search.
+PlanSearch exhaustive_search(const SettingSpace& space, double budget, const PlanOracle& oracle) {
+  PlanSearch search;
+  for (const SettingPoint& point : all_points(space)) {
+    search.trials.push_back(oracle.measure(point));
+    const PlanTrial& trial = search.trials.back();
+    if (!search.closest || trial.rel_error < search.closest->rel_error) search.closest = trial;
+  }
+  for (const PlanTrial& trial : search.trials)
+    if (trial.rel_error <= budget && (!search.best || oracle.cost(trial.point) < oracle.cost(search.best->point)))
+      search.best = trial;
+  return search;
+}
+
+/// The predicted time of a setting by the table of another plan, so that both use one model.
+double time_in(const Table& trials, const Settings& settings) {
+  const std::vector<Cell> wanted = setting_cells(settings);
+  for (size_t i = 0; i < trials.rows.size(); ++i)
+    if (std::equal(wanted.begin(), wanted.end(), trials.rows[i].begin())) return trials.number(i, "time");
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Plans for the scene within the budgets, and holds each plan against all settings of the space.
+void check_against_exhaustive(const StudyScene& scene, int width, PlanOptions options,
+                              const std::vector<double>& budgets) {
+  const Caster caster(scene.scene);
+  const View view = sized(scene.view, width);
+  const Settings base;
+  PlanOptions slow = options;
+  slow.budget = 0.0;
+  slow.search = exhaustive_search;
+  const Plan everything = make_plan(scene.scene, caster, view, base, slow);
+  for (const double budget : budgets) {
+    options.budget = budget;
+    const Plan plan = make_plan(scene.scene, caster, view, base, options);
+    double cheapest = std::numeric_limits<double>::infinity();
+    std::string cheapest_words = "nothing";
+    for (size_t i = 0; i < everything.trials.rows.size(); ++i)
+      if (everything.trials.number(i, "rel_error") <= budget && everything.trials.number(i, "time") < cheapest) {
+        cheapest = everything.trials.number(i, "time");
+        cheapest_words.clear();
+        for (size_t c = 0; c < setting_columns().size(); ++c)
+          cheapest_words += display(everything.trials.rows[i][c]) + " ";
+      }
+    const double time = plan.best ? time_in(everything.trials, plan.best->settings) : cheapest;
+    std::cout << fmt::format(
+        "{:<18} {:>4.0f} %  plan {:<52} {:.3g} s, best {:<32} {:.3g} s; {} of {} measured, {:.1f} % "
+        "of the work\n",
+        scene.name, 100 * budget, plan.best ? setting_words(plan.best->settings) : "nothing", time, cheapest_words,
+        cheapest, plan.trials.rows.size(), everything.trials.rows.size(), 100 * plan.seconds / everything.seconds);
+    CAPTURE(scene.name, budget, plan.trials.rows.size(), plan.seconds, everything.seconds);
+    CHECK(plan.best.has_value() == std::isfinite(cheapest));
+    if (plan.best) CHECK(time <= 1.25 * cheapest);
+    CHECK(plan.seconds <= 0.1 * everything.seconds);
+    if (plan.cheaper) CHECK(plan.cheaper->seconds < plan.best->seconds);
+    if (plan.better) CHECK(plan.better->rel_error < plan.best->rel_error);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("The plan for a real scene is as cheap as an exhaustive search's, at a tenth of its work", "[plan]") {
+  // Rates are given, so that no clock decides. At this size everything takes seconds.
+  PlanOptions options;
+  options.space = {
+      {16, 32, 64}, {0, 1, 3}, {Storage::unorm8, Storage::float16, Storage::float32}, {1.0f, 0.5f}, {4, 9, 16}};
+  options.width = 8;
+  options.reference_spp = 256;
+  options.rates = StageRates{};
+  check_against_exhaustive(cornell_point_scene(), 128, options, {0.5, 0.3});
+}
+
+namespace {
+
+/// Budgets of 40, 20 and 10 %. Work is counted by fixed rates, so that a busy machine decides nothing. All resolutions
+/// are halved: 256 voxels would take the exhaustive search, and nothing else, four times as long.
+void check_plans_of(const StudyScene& scene) {
+  PlanOptions options;
+  options.rates = StageRates{};
+  options.space.resolutions = {16, 32, 64, 128};
+  check_against_exhaustive(scene, 512, options, {0.4, 0.2, 0.1});
+}
+
+}  // namespace
+
+TEST_CASE("Plans for the Cornell box are as cheap as an exhaustive search's", "[.long][plan]") {
+  check_plans_of(cornell_point_scene());
+}
+
+TEST_CASE("Plans for Light Box are as cheap as an exhaustive search's", "[.long][plan]") {
+  check_plans_of(light_box_scene());
+}
+
+TEST_CASE("Plans for Sponza are as cheap as an exhaustive search's", "[.long][plan]") {
+  const auto file = shared_file("assets/scenes/sponza.glb");
+  if (!file) VOXREF_SKIP("sponza.glb is absent");
+  check_plans_of(*public_scene("sponza", file->parent_path().parent_path().parent_path(), false));
+}
+
+TEST_CASE("A scene without light is planned: black against black is no error", "[plan]") {
+  Scene scene = cornell_box(CornellLight::point);
+  scene.lights.clear();
+  const Caster caster(scene);
+  View view;
+  view.camera = scene.cameras.at(0);
+  PlanOptions options;
+  options.space = {{16, 24}, {0, 1}, {Storage::unorm8}, {1.0f}, {4, 6}};
+  options.width = 8;
+  options.reference_spp = 16;
+  options.rates = StageRates{};
+  const Plan plan = make_plan(scene, caster, sized(view, 64), {}, options);
+  REQUIRE(plan.best);
+  CHECK(plan.best->rel_error == 0.0);
+  CHECK(plan.best->settings.grid.resolution == 16);
+  CHECK(!plan.better);
+  // Not a number would be passed over in silence.
+  options.search = [](const SettingSpace& space, double budget, const PlanOracle& oracle) {
+    CHECK(oracle.noise == 0.0);
+    for (const double d : oracle.measure({}).difference) CHECK(d == 0.0);
+    return search_plan(space, budget, oracle);
+  };
+  make_plan(scene, caster, sized(view, 64), {}, options);
+}
+
+TEST_CASE("A plan's settings come back from its JSON and its flags", "[plan]") {
+  Settings settings = profile("villegas2016");
+  settings.grid.resolution = 64;
+  settings.render.cone.step = 0.25f;
+  settings.bounce.count.reset();
+  CHECK(config(settings) == nlohmann::json{{"profile", "villegas2016"},
+                                           {"grid", {{"resolution", 64}}},
+                                           {"cone", {{"step", 0.25}}},
+                                           {"bounce", {{"count", "auto"}}}});
+  Settings again;
+  apply_json(again, config(settings));
+  CHECK(to_json(again) == to_json(settings));
+  CHECK(assignments(settings) ==
+        "--profile villegas2016 --set bounce.count=auto --set cone.step=0.25 --set grid.resolution=64");
+}
