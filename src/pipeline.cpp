@@ -32,36 +32,21 @@ glm::vec3 mean_color(const Image& image) {
   return glm::vec3(sum / double(image.pixel_count()));
 }
 
-/// Gives back what a stage freed: of pages that held many small blocks glibc's heap keeps all but the last ones, which is
-/// a tenth of the peak at 512 voxels.
-void give_back_freed_memory() {
-  malloc_trim(0);
-}
+/// Gives back what a stage freed: of pages that held many small blocks glibc's heap keeps all but the last ones, which
+/// is a tenth of the peak at 512 voxels.
+void give_back_freed_memory() { malloc_trim(0); }
 
-/// What surfaces and a pyramid hold. @param radiances per voxel: direct, and after the bounces
-template <class Texel>
-VolumeBytes count_bytes(const SurfaceGrid& surfaces, const BasicPyramid<Texel>& pyramid, size_t radiances) {
-  VolumeBytes bytes;
-  bytes["surfaces"] = surfaces.bytes();
-  bytes["radiance"] = radiances * surfaces.size() * sizeof(glm::vec3);
-  bytes["visibility"] = surfaces.size() * sizeof(float);
-  bytes["base"] = pyramid.base.bytes();
-  for (const auto& level : pyramid.levels) bytes["levels"] += level.bytes();
-  return bytes;
-}
-
-/// What cones need beside them.
-void count_bytes_beside(VolumeBytes& bytes, const LitVolume& volume) {
+/// What cones march through. @param depth_bytes those that the bounces held
+void count_bytes(VolumeBytes& bytes, const LitVolume& volume, size_t depth_bytes) {
   std::visit(
       [&](const auto& v) {
-        if constexpr (requires { v.depth_bytes; }) {
-          bytes["occupancy"] = v.occupied.bytes();
-          bytes["depths"] = v.depth_bytes;
-        } else {
-          bytes["occupancy"] = Occupancy(v).bytes();
-        }
+        if constexpr (requires { v.depth_bytes; }) depth_bytes = std::max(depth_bytes, v.depth_bytes);
+        bytes["base"] = v.texels.base.bytes();
+        for (const auto& level : v.texels.levels) bytes["levels"] += level.bytes();
+        bytes["occupancy"] = v.occupied.bytes();
       },
       volume);
+  if (depth_bytes != 0) bytes["depths"] = depth_bytes;
 }
 
 /// The stages between voxelization and image, with volumes of one storage.
@@ -88,11 +73,16 @@ LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, 
     folder->write_levels(pyramid, false);
   }
 
+  VolumeBytes& bytes = result.bytes;
+  bytes["surfaces"] = surfaces.bytes();
+  bytes["radiance"] = shading.radiance.capacity() * sizeof(glm::vec3);
+  bytes["visibility"] = shading.visibility.capacity() * sizeof(float);
+  if (shading.shadow_bytes != 0) bytes["shadow"] = shading.shadow_bytes;
   const bool lights_seen = settings.render.pixel.shadow == PixelShadow::visibility;
-  if (!lights_seen) shading.visibility = {};
+  if (!lights_seen) shading.visibility = std::vector<float>();  // {} would keep the memory
 
-  const bool bounces = settings.bounce.count != 0;
-  if (bounces) {
+  size_t depth_bytes = 0;
+  if (settings.bounce.count != 0) {
     BasicBounceResult<Texel> bounced = timed(seconds.bounce, [&] {
       return bounce(surfaces, shading.radiance, std::move(pyramid), settings.bounce, settings.render.cone,
                     settings.mipmap, background, progress);
@@ -100,25 +90,27 @@ LitVoxels light(const Scene& scene, const Caster& caster, SurfaceGrid surfaces, 
     result.bounces = bounced.bounces;
     result.gain = bounced.gain;
     result.clamped_bounce = bounced.clamped;
+    bytes["radiance"] += bounced.radiance.capacity() * sizeof(glm::vec3);
+    depth_bytes = bounced.depth_bytes;
     pyramid = std::move(bounced.pyramid);
     if (folder) {
       folder->write_radiance(surfaces, bounced.radiance, true);
       folder->write_levels(pyramid, true);
     }
   }
-  result.bytes = count_bytes(surfaces, pyramid, bounces ? 2 : 1);
   if (lights_seen) {
     if constexpr (std::is_same_v<Texel, Rgba8>)  // as the volume holds it, which is of float32 otherwise
       for (float& share : shading.visibility) share = decode_alpha(encode<Texel>(Float4{0.0f, 0.0f, 0.0f, share}));
     result.visibility.emplace(surfaces, shading.visibility);
+    bytes["light_visibility"] = result.visibility->bytes();
   }
   surfaces = {};  // the image needs none of them
   shading = {};
   result.volume = timed(seconds.prepare, [&] {
     return lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
   });
-  count_bytes_beside(result.bytes, result.volume);
-  add_total(result.bytes, settings);
+  count_bytes(bytes, result.volume, depth_bytes);
+  add_total(bytes, settings);
   seconds.total = seconds_since(start);
   return result;
 }

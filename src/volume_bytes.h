@@ -8,8 +8,10 @@
 
 namespace voxref {
 
-/// Bytes of each volume: surfaces, radiance (direct, and after the bounces), visibility, base, levels (all directional
-/// ones), occupancy, depths (held while extinction is made ready); `total` is the most that is held at once.
+/// Bytes of each volume that there is: surfaces, radiance (direct, and after the bounces), visibility, shadow (what
+/// shadows at the voxels are marched through), base, levels (all directional ones), occupancy, depths (held while
+/// extinction is made ready), light_visibility (what pixel.shadow=visibility reads). `total` is the most that is held
+/// at once.
 using VolumeBytes = std::map<std::string, size_t>;
 
 /// What the pipeline will allocate for these surfaces. Bricks follow from the occupied voxels alone.

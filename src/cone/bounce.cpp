@@ -61,8 +61,8 @@ class MediumGather {
 template <class Texel>
 class RawGather {
  public:
-  RawGather(const SurfaceGrid& surfaces, BasicPyramid<Texel>&& pyramid, const BounceOptions& options)
-      : surfaces_(surfaces), pyramid_(std::move(pyramid)), gatherer_(pyramid_, options.max_distance) {}
+  RawGather(const SurfaceGrid& surfaces, BasicRawVolume<Texel>&& volume, const BounceOptions& options)
+      : surfaces_(surfaces), volume_(std::move(volume)), gatherer_(volume_, options.max_distance) {}
 
   /// Albedo x irradiance at voxel i.
   glm::vec3 reflected(size_t i) const {
@@ -74,7 +74,7 @@ class RawGather {
 
  private:
   const SurfaceGrid& surfaces_;
-  BasicPyramid<Texel> pyramid_;
+  BasicRawVolume<Texel> volume_;
   RawVoxelGatherer<Texel> gatherer_;
 };
 
@@ -156,11 +156,12 @@ BasicBounceResult<Texel> bounce(const SurfaceGrid& surfaces, std::span<const glm
   // Each bounce takes over the pyramid's memory and frees it before the next is made: only one is held at a time.
   const auto gather = [&](const BounceProgress& so_far) {
     if (options.cones == published_cones)
-      return gather_bounce<Texel>(surfaces, direct, RawGather<Texel>(surfaces, std::move(result.pyramid), options),
+      return gather_bounce<Texel>(surfaces, direct,
+                                  RawGather(surfaces, BasicRawVolume(std::move(result.pyramid)), options),
                                   result.radiance, so_far);
-    return gather_bounce<Texel>(surfaces, direct,
-                                MediumGather(surfaces, make_medium(std::move(result.pyramid), mipmap_options.filter),
-                                             options, cone, background),
+    BasicMedium<Texel> medium = make_medium(std::move(result.pyramid), mipmap_options.filter);
+    result.depth_bytes = medium.depth_bytes;
+    return gather_bounce<Texel>(surfaces, direct, MediumGather(surfaces, std::move(medium), options, cone, background),
                                 result.radiance, so_far);
   };
   // Bytes cannot hold more than 1, and the published cones clamp what arrives: then light does not grow for ever.

@@ -21,6 +21,7 @@ struct BasicBounceResult {
   BasicPyramid<Texel> pyramid;      ///< filtered from it
   int bounces = 0;                  ///< how many were made
   Clamping clamped;                 ///< by the last bounce
+  size_t depth_bytes = 0;           ///< held beside the pyramid while it was made ready for cones
   double gain = 0.0;                ///< last addition over the one before (loop gain); 0 with fewer than two bounces
 };
 using BounceResult = BasicBounceResult<glm::vec4>;

@@ -8,7 +8,7 @@
 namespace voxref {
 
 /// Filtered light and opacity, in the form that `cone.opacity` and `storage` ask for.
-using LitVolume = std::variant<Medium, Medium16, Medium8, Pyramid, Pyramid16, Pyramid8>;
+using LitVolume = std::variant<Medium, Medium16, Medium8, RawVolume, RawVolume16, RawVolume8>;
 
 /// Takes the pyramid's memory over.
 template <class Texel>

@@ -15,6 +15,8 @@ class LightVisibility {
   /// Trilinear; the volume's border goes on for ever. @param position world
   float operator()(const glm::vec3& position) const;
 
+  size_t bytes() const { return shares_.bytes(); }
+
  private:
   Grid grid_;
   BrickVolume<float> shares_;

@@ -24,6 +24,7 @@ struct BasicMedium {
 
   /// Coarsest level that can be sampled; 0 is the base volume, k is texels.levels[k - 1].
   int top() const { return static_cast<int>(texels.levels.size()); }
+  size_t bytes() const { return texels.bytes() + occupied.bytes(); }
   /// Texels of a level have sides of this many voxels.
   static float cell(int level) { return static_cast<float>(1u << level); }
 };

@@ -21,7 +21,7 @@ template <class Visit>
 void for_each_block(const BitBlocks& bits, Visit&& visit) {
   for (int i = 0; i < count(bits.block_grid()); ++i) {
     const glm::ivec3 at = block_at(bits.block_grid(), i);
-    if (const BitBlocks::Block* block = bits.find(at)) visit(at, BitBlocks::Block(*block));
+    if (const BitBlocks::Block* block = bits.find(at)) visit(at, *block);
   }
 }
 
@@ -72,29 +72,29 @@ void add_parents(const BitBlocks& fine, BitBlocks& coarse) {
   });
 }
 
-/// The cells that touch a texel: those of its own index and of the next along each axis.
-BitBlocks cells_around(const BitBlocks& texels, const glm::ivec3& size) {
-  BitBlocks cells(size + 1);
+/// Calls visit(block coordinates, z, slice) for what the cells that touch a texel set of a slice of their blocks: those
+/// of the texel's own index and of the next along each axis.
+template <class Visit>
+void for_each_slice_of_cells(const BitBlocks& texels, Visit&& visit) {
   constexpr uint64_t not_first_column = 0xfefefefefefefefe, first_column = 0x0101010101010101;
-  const auto set_rows = [&](const glm::ivec3& block, int z, uint64_t slice) {
-    cells.set(block, z, slice | slice << side);
-    cells.set(block + glm::ivec3(0, 1, 0), z, slice >> (side * (side - 1)));
+  const auto rows = [&](const glm::ivec3& block, int z, uint64_t slice) {
+    visit(block, z, slice | slice << side);
+    visit(block + glm::ivec3(0, 1, 0), z, slice >> (side * (side - 1)));
   };
-  const auto set_slice = [&](const glm::ivec3& block, int z, uint64_t slice) {
-    set_rows(block, z, slice | (slice << 1 & not_first_column));
-    set_rows(block + glm::ivec3(1, 0, 0), z, slice >> (side - 1) & first_column);
+  const auto whole_slice = [&](const glm::ivec3& block, int z, uint64_t slice) {
+    rows(block, z, slice | (slice << 1 & not_first_column));
+    rows(block + glm::ivec3(1, 0, 0), z, slice >> (side - 1) & first_column);
   };
   for_each_block(texels, [&](const glm::ivec3& at, const BitBlocks::Block& block) {
-    for (int z = 0; z < side; ++z) set_slice(at, z, block[size_t(z)] | (z > 0 ? block[size_t(z) - 1] : 0));
-    set_slice(at + glm::ivec3(0, 0, 1), 0, block[side - 1]);
+    for (int z = 0; z < side; ++z) whole_slice(at, z, block[size_t(z)] | (z > 0 ? block[size_t(z) - 1] : 0));
+    whole_slice(at + glm::ivec3(0, 0, 1), 0, block[side - 1]);
   });
-  return cells;
 }
 
 }  // namespace
 
 void BitBlocks::set(const glm::ivec3& block, int z, uint64_t bits) {
-  if (bits == 0 || block.x >= blocks_.x || block.y >= blocks_.y || block.z >= blocks_.z) return;
+  if (bits == 0) return;
   uint32_t& slot = slots_[index(block)];
   if (slot == absent) {
     slot = uint32_t(bits_.size());
@@ -103,45 +103,57 @@ void BitBlocks::set(const glm::ivec3& block, int z, uint64_t bits) {
   bits_[slot][size_t(z)] |= bits;
 }
 
-/// Appends the blocks of the next level.
-void Occupancy::add_level(const BitBlocks& cells) {
-  first_.push_back(int32_t(slots_.size()));
-  for (int i = 0; i < count(cells.block_grid()); ++i) {
-    const Block* block = cells.find(block_at(cells.block_grid(), i));
-    slots_.push_back(block ? uint32_t(blocks_.size()) : 0);
-    if (block) blocks_.push_back(*block);
+/// Twice over the texels, first for where there are blocks: so they are allocated once. @param texels of all levels
+void Occupancy::mark_cells_around(const std::vector<BitBlocks>& texels) {
+  std::vector<glm::ivec3> grids;
+  for (size_t level = 0; level < texels.size(); ++level) {
+    first_.push_back(level == 0 ? 0 : first_.back() + count(grids.back()));
+    grids.push_back(to_ivec3(block_grid(last_ >> int(level))));
   }
+  slots_.assign(size_t(first_.back() + count(grids.back())), 0);
+  const auto for_each_slice = [&](auto&& visit) {
+    for (size_t level = 0; level < texels.size(); ++level) {
+      const glm::ivec3& grid = grids[level];
+      for_each_slice_of_cells(texels[level], [&](const glm::ivec3& at, int z, uint64_t slice) {
+        if (slice != 0) visit(slots_[size_t(first_[level] + at.x + grid.x * (at.y + grid.y * at.z))], z, slice);
+      });
+    }
+  };
+  for_each_slice([](uint32_t& slot, int, uint64_t) { slot = 1; });
+  uint32_t blocks = 1;
+  for (uint32_t& slot : slots_)
+    if (slot != 0) slot = blocks++;
+  blocks_.resize(blocks);
+  for_each_slice([&](uint32_t slot, int z, uint64_t slice) { blocks_[slot][size_t(z)] |= slice; });
 }
 
 template <class Texel>
 Occupancy::Occupancy(const BasicPyramid<Texel>& pyramid) : Occupancy(pyramid.base.size()) {
-  BitBlocks texels(pyramid.base.size());
-  add_texels(pyramid.base, texels);
-  add_level(cells_around(texels, pyramid.base.size()));
+  std::vector<BitBlocks> texels;
+  texels.reserve(pyramid.levels.size() + 1);
+  texels.emplace_back(pyramid.base.size()).reserve(pyramid.base.brick_count());
+  add_texels(pyramid.base, texels.back());
   for (const BrickVolume<Directional<Texel>>& level : pyramid.levels) {
-    BitBlocks coarse(level.size());
-    add_parents(texels, coarse);
+    BitBlocks& coarse = texels.emplace_back(level.size());
+    coarse.reserve(level.brick_count());
+    add_parents(texels[texels.size() - 2], coarse);
     add_texels(level, coarse);  // volumes that somebody else made may hold more than their parents do
-    add_level(cells_around(coarse, level.size()));
-    texels = std::move(coarse);
   }
-  shrink_to_fit();
+  mark_cells_around(texels);
 }
 
 Occupancy::Occupancy(const SurfaceGrid& surfaces) : Occupancy(surfaces.grid.size) {
   glm::ivec3 size = surfaces.grid.size;
-  BitBlocks texels(size);
+  std::vector<BitBlocks> texels(1, BitBlocks(size));
   for (const glm::ivec3& v : surfaces.voxels)
-    texels.set(v / side, v.z % side, uint64_t{1} << (v.x % side + side * (v.y % side)));
-  add_level(cells_around(texels, size));
+    texels.back().set(v / side, v.z % side, uint64_t{1} << (v.x % side + side * (v.y % side)));
   while (size != glm::ivec3(1)) {
     size = (size + 1) / 2;
     BitBlocks coarse(size);
-    add_parents(texels, coarse);
-    add_level(cells_around(coarse, size));
-    texels = std::move(coarse);
+    add_parents(texels.back(), coarse);
+    texels.push_back(std::move(coarse));
   }
-  shrink_to_fit();
+  mark_cells_around(texels);
 }
 
 Occupancy::Gap Occupancy::gap(int level, const Float4& p, const Float4& way, const Float4& inverse) const {

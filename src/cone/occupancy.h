@@ -9,8 +9,8 @@
 
 namespace voxref {
 
-/// One bit for each texel of a volume, or for each cell between texels, in blocks of 8^3; blocks without a bit that is
-/// set take no memory but their table entry.
+/// One bit for each texel of a volume, in blocks of 8^3; blocks without a bit that is set take no memory but their
+/// table entry.
 class BitBlocks {
  public:
   static constexpr int side = 8;
@@ -23,18 +23,13 @@ class BitBlocks {
       : blocks_((size + side - 1) / side), slots_(size_t(blocks_.x) * size_t(blocks_.y) * size_t(blocks_.z), absent) {}
 
   const glm::ivec3& block_grid() const { return blocks_; }
-  /// @param v in the size
-  bool operator()(const glm::ivec3& v) const {
-    constexpr int in_block = side - 1;
-    const uint32_t slot = slots_[index({v.x / side, v.y / side, v.z / side})];
-    return slot != absent && (bits_[slot][size_t(v.z & in_block)] >> ((v.x & in_block) + side * (v.y & in_block)) & 1u);
-  }
+  void reserve(size_t blocks) { bits_.reserve(blocks); }
   /// Block of the given block coordinates, null where it has no bits.
   const Block* find(const glm::ivec3& block) const {
     const uint32_t slot = slots_[index(block)];
     return slot == absent ? nullptr : &bits_[slot];
   }
-  /// Sets bits of a slice of a block. Those outside of the block table are dropped.
+  /// Sets bits of a slice of a block.
   void set(const glm::ivec3& block, int z, uint64_t bits);
 
  private:
@@ -115,11 +110,7 @@ class Occupancy {
   }
   /// Without levels. @param size texels of the base
   explicit Occupancy(const glm::ivec3& size) : last_(to_int4(size) - 1), blocks_(1) {}
-  void add_level(const BitBlocks& cells);
-  void shrink_to_fit() {
-    slots_.shrink_to_fit();
-    blocks_.shrink_to_fit();
-  }
+  void mark_cells_around(const std::vector<BitBlocks>& texels);
 
   // All levels in one table, so that look-ups in different ones can go side by side.
   Int4 last_{};                  // texel of the base along each axis; that of level k is last_ >> k

@@ -34,8 +34,9 @@ glm::vec3 turned(const glm::mat3& frame, const Cone& cone) {
 }  // namespace
 
 template <class Texel>
-RawVoxelGatherer<Texel>::RawVoxelGatherer(const BasicPyramid<Texel>& pyramid, std::optional<float> max_distance)
-    : pyramid_(pyramid), occupied_(pyramid), cones_(voxel_cones(published_cones)) {
+RawVoxelGatherer<Texel>::RawVoxelGatherer(const BasicRawVolume<Texel>& volume, std::optional<float> max_distance)
+    : volume_(volume), cones_(voxel_cones(published_cones)) {
+  const BasicPyramid<Texel>& pyramid = volume.texels;
   steps_ = {steps_of(pyramid.grid, cones_.cones.front().tan_half_angle, pyramid.levels.size(), max_distance), 1.0f};
 }
 
@@ -52,10 +53,10 @@ template <class Texel>
 glm::vec3 RawVoxelGatherer<Texel>::march(const glm::vec3& apex, const glm::vec3& direction) const {
   if (steps_.size() == 0) return glm::vec3(0.0f);
   const ConeAxis axis(apex, direction);
-  const glm::vec3 first(to_vec4(axis.origin + steps_[0].distance * axis.way)), size(pyramid_.grid.size);
+  const glm::vec3 first(to_vec4(axis.origin + steps_[0].distance * axis.way)), size(volume_.texels.grid.size);
   if (glm::any(glm::lessThan(first, glm::vec3(0.0f))) || glm::any(glm::greaterThan(first, size)))
     return glm::vec3(0.0f);
-  return march_raw(pyramid_, occupied_, axis, steps_).radiance;
+  return march_raw(volume_.texels, volume_.occupied, axis, steps_).radiance;
 }
 
 template class RawVoxelGatherer<glm::vec4>;

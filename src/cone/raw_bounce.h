@@ -4,7 +4,7 @@
 
 #include "cone/cone_set.h"
 #include "cone/raw_march.h"
-#include "voxel/mipmap.h"
+#include "cone/raw_volume.h"
 
 namespace voxref {
 
@@ -14,8 +14,8 @@ namespace voxref {
 template <class Texel>
 class RawVoxelGatherer {
  public:
-  /// @param pyramid kept by reference @param max_distance in the grid's longest sides; none: to its diagonal
-  RawVoxelGatherer(const BasicPyramid<Texel>& pyramid, std::optional<float> max_distance);
+  /// @param volume kept by reference @param max_distance in the grid's longest sides; none: to its diagonal
+  RawVoxelGatherer(const BasicRawVolume<Texel>& volume, std::optional<float> max_distance);
 
   /// In [0,1]: the shader clamps it. @param normal unit
   glm::vec3 irradiance(const glm::ivec3& voxel, const glm::vec3& normal) const;
@@ -23,8 +23,7 @@ class RawVoxelGatherer {
  private:
   glm::vec3 march(const glm::vec3& apex, const glm::vec3& direction) const;
 
-  const BasicPyramid<Texel>& pyramid_;
-  Occupancy occupied_;
+  const BasicRawVolume<Texel>& volume_;
   ConeSet cones_;
   ConeSteps steps_;  ///< distances in voxels
 };

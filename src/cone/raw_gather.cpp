@@ -10,9 +10,9 @@
 namespace voxref {
 
 template <class Texel>
-RawGatherer<Texel>::RawGatherer(const BasicPyramid<Texel>& pyramid, ConeSet diffuse, const GatherOptions& options)
-    : pyramid_(pyramid), diffuse_(std::move(diffuse)), options_(options), occupied_(pyramid) {
-  const Grid& grid = pyramid.grid;
+RawGatherer<Texel>::RawGatherer(const BasicRawVolume<Texel>& volume, ConeSet diffuse, const GatherOptions& options)
+    : pyramid_(volume.texels), occupied_(volume.occupied), diffuse_(std::move(diffuse)), options_(options) {
+  const Grid& grid = pyramid_.grid;
   side_ = grid.voxel * static_cast<float>(std::max({grid.size.x, grid.size.y, grid.size.z}));
   unit_ = grid.voxel * options.cone.raw_unit;
   // Beyond the box's diagonal every cone has left it.

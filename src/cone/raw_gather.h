@@ -3,6 +3,7 @@
 
 #include "cone/gather.h"
 #include "cone/raw_march.h"
+#include "cone/raw_volume.h"
 #include "scene/light.h"
 
 namespace voxref {
@@ -24,8 +25,8 @@ struct GatherOptions {
 template <class Texel>
 class RawGatherer {
  public:
-  /// Keeps a reference to the pyramid.
-  RawGatherer(const BasicPyramid<Texel>& pyramid, ConeSet diffuse, const GatherOptions& options);
+  /// Keeps a reference to the volume.
+  RawGatherer(const BasicRawVolume<Texel>& volume, ConeSet diffuse, const GatherOptions& options);
 
   DiffuseGather diffuse(const GatherPoint& point) const;
   glm::vec3 specular(const GatherPoint& point, const glm::vec3& to_viewer, float tan_half_angle) const;
@@ -38,12 +39,12 @@ class RawGatherer {
   RawCone march(const GatherPoint& point, const glm::vec3& direction, const ConeSteps& steps) const;
 
   const BasicPyramid<Texel>& pyramid_;
+  const Occupancy& occupied_;
   ConeSet diffuse_;
   GatherOptions options_;
   float side_, unit_, end_;               // the grid's longest side; w; where cones end; world units
   std::vector<ConeSteps> diffuse_steps_;  // one per cone
   ConeSteps shadow_steps_;
-  Occupancy occupied_;
 };
 
 }  // namespace voxref

@@ -91,6 +91,9 @@ class Shader {
     shading.visibility[voxel] = std::clamp(visible / lights, 0.0f, 1.0f);
   }
 
+  /// Of the volume that shadows are marched through.
+  size_t shadow_bytes() const { return shadow_volume_ ? shadow_volume_->bytes() : medium_ ? medium_->bytes() : 0; }
+
  private:
   bool caster_shadow() const { return options_.shadow == VoxelShadow::rays; }
 
@@ -160,7 +163,7 @@ class Shader {
 Shading shade(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
               const ShadeOptions& options, const Progress& progress) {
   const Shader shader(scene, caster, surfaces, light, options);
-  Shading shading{std::vector<glm::vec3>(surfaces.size()), std::vector<float>(surfaces.size())};
+  Shading shading{std::vector<glm::vec3>(surfaces.size()), std::vector<float>(surfaces.size()), shader.shadow_bytes()};
   std::atomic<size_t> finished = 0;
   parallel_for(surfaces.size(), 1024, [&](size_t begin, size_t end) {
     progress.check();

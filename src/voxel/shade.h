@@ -38,6 +38,7 @@ struct ShadeOptions {
 struct Shading {
   std::vector<glm::vec3> radiance;  ///< outgoing, W/(sr m^2); not premultiplied
   std::vector<float> visibility;    ///< mean over the lights of the share that arrives, in [0,1]; 0 without lights
+  size_t shadow_bytes = 0;          ///< of the volume that shadows were marched through, which is gone
 };
 
 /// Radiance of each occupied voxel: emission + albedo/pi x irradiance x visibility of the punctual lights, at the

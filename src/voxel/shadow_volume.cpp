@@ -39,6 +39,8 @@ ShadowVolume::ShadowVolume(const SurfaceGrid& surfaces)
     for (int yz = 0; yz < 4; ++yz) mark_two(v + glm::ivec3(0, yz & 1, yz >> 1));
     voxels_[slots_[block_index(v)]][size_t(v.z % side)] |= uint64_t{1} << (v.x % side + side * (v.y % side));
   }
+  cells_.shrink_to_fit();
+  voxels_.shrink_to_fit();
   measure_gaps();
 }
 
@@ -101,6 +103,11 @@ bool ShadowVolume::hits(const Block& cells, const glm::ivec3& cell, const glm::v
     if (occupied(glm::clamp(cell - 1 + offset, glm::ivec3(0), size_ - 1))) return true;
   }
   return false;
+}
+
+size_t ShadowVolume::bytes() const {
+  return slots_.capacity() * sizeof(uint32_t) + gaps_.capacity() +
+         (cells_.capacity() + voxels_.capacity()) * sizeof(Block);
 }
 
 float ShadowVolume::visibility(const glm::vec3& from, const glm::vec3& direction, float distance, float hit) const {

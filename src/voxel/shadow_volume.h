@@ -20,6 +20,8 @@ class ShadowVolume {
   /// @param direction unit @param hit k = hit^2; above 1 the first hit ends in darkness
   float visibility(const glm::vec3& from, const glm::vec3& direction, float distance, float hit) const;
 
+  size_t bytes() const;
+
  private:
   static constexpr int side = 8;  // cells of a block, whose rows are bytes
   using Block = std::array<uint64_t, side>;

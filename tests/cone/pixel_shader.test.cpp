@@ -20,7 +20,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr int side = 32;  // voxels, one world unit each
 
 /// A closed box of glowing walls one voxel thick, in a grid of 32 voxels; beyond x = 22 they glow twice as much.
-const Pyramid8& glowing_box() {
+Pyramid8 glowing_box() {
   static const Pyramid8 pyramid = [] {
     BrickVolume<Rgba8> base{glm::ivec3(side)};
     std::vector<glm::ivec3> bricks;

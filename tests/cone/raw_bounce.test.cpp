@@ -25,9 +25,9 @@ Pyramid uniform(const glm::vec4& base, const glm::vec4& texel) {
   return pyramid;
 }
 
-float irradiance(const Pyramid& pyramid, const glm::ivec3& voxel, const glm::vec3& normal,
+float irradiance(Pyramid pyramid, const glm::ivec3& voxel, const glm::vec3& normal,
                  std::optional<float> max_distance = 0.95f) {
-  return RawVoxelGatherer<glm::vec4>(pyramid, max_distance).irradiance(voxel, normal).r;
+  return RawVoxelGatherer(RawVolume(std::move(pyramid)), max_distance).irradiance(voxel, normal).r;
 }
 
 }  // namespace

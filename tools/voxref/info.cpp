@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <set>
 
 #include "commands.h"
 #include "inputs.h"
@@ -14,7 +14,7 @@ namespace voxref {
 
 namespace {
 
-constexpr std::array<int, 4> resolutions = {64, 128, 256, 512};
+const std::set<int> usual_resolutions = {64, 128, 256, 512};
 
 struct Options {
   CommonOptions common;
@@ -100,7 +100,7 @@ void say(Terminal& terminal, const Scene& scene, const std::vector<VolumeNeed>& 
     line("bounds", fmt::format("{:g} {:g} {:g} to {:g} {:g} {:g}", bounds.min.x, bounds.min.y, bounds.min.z,
                                bounds.max.x, bounds.max.y, bounds.max.z));
   for (const VolumeNeed& n : needs)
-    line(n.resolution == resolutions.front() ? "volumes" : "",
+    line(n.resolution == needs.front().resolution ? "volumes" : "",
          fmt::format("{:>4}: {}x{}x{}, {} voxels occupied; {}", n.resolution, n.grid.size.x, n.grid.size.y,
                      n.grid.size.z, n.voxels, bytes_of(n)));
 }
@@ -111,7 +111,8 @@ int run_info(const Options& options) {
   Terminal terminal(options.common);
   const Scene scene = load_scene(options.scene, terminal);
   std::vector<VolumeNeed> needs;
-  needs.reserve(resolutions.size());
+  std::set<int> resolutions = usual_resolutions;
+  resolutions.insert(settings.grid.resolution);
   // The published shaders look every texture up: a texel's alpha of 0 writes nothing.
   const Scene shape = settings.voxelize.method == VoxelizeMethod::exact ? without_textures(scene) : scene;
   for (const int resolution : resolutions) needs.push_back(measure(shape, settings, resolution, terminal.progress()));
@@ -145,9 +146,9 @@ void add_info(CLI::App& program, Run& run) {
   add_settings_options(*command, options->settings);
   add_common_options(*command, options->common);
   command->footer(
-      "The volumes are counted by voxelizing the scene at each resolution; `total` is the most that `voxref cone` "
-      "holds\n"
-      "of them at once with the same settings.\n\n"
+      "The volumes are counted by voxelizing the scene with 64, 128, 256 and 512 voxels along its longest side, and\n"
+      "with grid.resolution where that is another number; `total` is the most that `voxref cone` holds of them at\n"
+      "once with the same settings.\n\n"
       "Example:\n  voxref info scenes/cornell_box.glb --set storage=float16");
   on_run(command, run, [options] { return run_info(*options); });
 }
