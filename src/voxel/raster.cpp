@@ -76,6 +76,7 @@ std::optional<DilatedTriangle> DilatedTriangle::make(const RasterTriangle& trian
   const int axis = dominant_axis(triangle.positions), size = views.grid().size.x;
   std::array<glm::vec4, 3> corner;
   std::array<glm::vec2, 3> uv = triangle.uv;
+  std::optional<std::array<glm::vec4, 3>> colors = triangle.colors;
   for (size_t i = 0; i < 3; ++i) corner[i] = views.project(axis) * glm::vec4(triangle.positions[i], 1.0f);
   const glm::vec3 first(corner[0]);
   const glm::vec3 normal = glm::normalize(glm::cross(glm::vec3(corner[1]) - first, glm::vec3(corner[2]) - first));
@@ -83,6 +84,7 @@ std::optional<DilatedTriangle> DilatedTriangle::make(const RasterTriangle& trian
   if (normal.z < 0.0f) {  // the normals keep their places: the published shader forgets them
     std::swap(corner[1], corner[2]);
     std::swap(uv[1], uv[2]);
+    if (colors) std::swap((*colors)[1], (*colors)[2]);
   }
 
   const float p = 1.0f / float(size);
@@ -120,6 +122,10 @@ std::optional<DilatedTriangle> DilatedTriangle::make(const RasterTriangle& trian
   };
   result.depth_ = linear(depth[0], depth[1], depth[2]);
   for (size_t k = 0; k < attributes; ++k) result.values_[k] = linear(value[0][k], value[1][k], value[2][k]);
+  if (colors) {
+    result.color_.emplace();
+    for (int k = 0; k < 4; ++k) (*result.color_)[size_t(k)] = linear((*colors)[0][k], (*colors)[1][k], (*colors)[2][k]);
+  }
   return result;
 }
 

@@ -14,6 +14,7 @@ struct RasterTriangle {
   std::array<glm::vec3, 3> positions;  ///< world
   std::array<glm::vec3, 3> normals;
   std::array<glm::vec2, 3> uv;
+  std::optional<std::array<glm::vec4, 3>> colors{};  ///< linear; none: white
 };
 
 /// One pixel of a triangle.
@@ -21,6 +22,7 @@ struct RasterFragment {
   glm::ivec3 voxel{0};     ///< may lie outside the grid
   glm::vec3 normal{0.0f};  ///< interpolated, not normalized
   glm::vec2 uv{0.0f};
+  glm::vec4 color{1.0f};
 };
 
 /// The axis along which a triangle is drawn: the one with the strictly greatest component of its normal, z if none.
@@ -80,6 +82,7 @@ class DilatedTriangle {
   std::array<Edge, 3> edges_;
   Linear depth_;  ///< NDC
   std::array<Linear, attributes> values_;
+  std::optional<std::array<Linear, 4>> color_;
 };
 
 template <class Visit>
@@ -93,7 +96,10 @@ void DilatedTriangle::for_each_fragment(int begin, int end, Visit&& visit) const
       std::array<float, attributes> v;
       for (size_t i = 0; i < attributes; ++i) v[i] = float(values_[i](x, y));
       // Conversion truncates towards zero, and so would take (-1,0) into voxel 0, as the shader's does.
-      visit(RasterFragment{{int(v[0]), int(v[1]), int(v[2])}, {v[3], v[4], v[5]}, {v[6], v[7]}});
+      RasterFragment fragment{{int(v[0]), int(v[1]), int(v[2])}, {v[3], v[4], v[5]}, {v[6], v[7]}};
+      if (color_)
+        for (size_t i = 0; i < 4; ++i) fragment.color[int(i)] = float((*color_)[i](x, y));
+      visit(fragment);
     }
 }
 

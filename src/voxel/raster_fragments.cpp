@@ -41,6 +41,10 @@ class FragmentShader {
       result.normals[i] = scene_.normals[vertex];
       result.uv[i] = uv.empty() ? glm::vec2(0.0f) : uv[vertex];
     }
+    if (!scene_.colors.empty()) {
+      const glm::uvec3& corners = scene_.triangles[index];
+      result.colors = {scene_.colors[corners.x], scene_.colors[corners.y], scene_.colors[corners.z]};
+    }
     return result;
   }
 
@@ -49,11 +53,11 @@ class FragmentShader {
     const uint32_t index = scene_.triangle_materials[triangle];
     const Material& material = scene_.materials[index];
     const glm::vec4 texel = texture(bindings_[index], pixel.uv);
-    const float opacity = material.base_color.a * texel.a;
+    const float opacity = material.base_color.a * texel.a * pixel.color.a;
     if (!(opacity > 0.0f)) return std::nullopt;
     const glm::vec3 color(texel);
-    return FragmentValue{diffuse(material, pixel.uv) * color * opacity, 0.5f * glm::normalize(pixel.normal) + 0.5f,
-                         material.emission * color};
+    return FragmentValue{diffuse(material, pixel.uv) * glm::vec3(pixel.color) * color * opacity,
+                         0.5f * unit(pixel.normal) + 0.5f, material.emission * color};
   }
   bool textured(uint32_t triangle) const {
     const uint32_t index = scene_.triangle_materials[triangle];
@@ -62,6 +66,10 @@ class FragmentShader {
   const Grid& grid() const { return grid_; }
 
  private:
+  /// Where the normals of corners cancel there is no direction, and the shader's result is undefined: zero.
+  static glm::vec3 unit(const glm::vec3& normal) {
+    return glm::dot(normal, normal) > 0.0f ? glm::normalize(normal) : glm::vec3(0.0f);
+  }
   glm::vec4 texture(const TextureBinding& binding, const glm::vec2& uv) const {
     return binding ? lookup(scene_.images[size_t(binding.image)], binding, uv) : glm::vec4(1.0f);
   }
@@ -90,7 +98,7 @@ class FragmentWriter {
  private:
   /// As the pixel that was shaded last.
   bool same_value(const RasterFragment& pixel) const {
-    return pixel.normal == last_.normal && (!textured_ || pixel.uv == last_.uv);
+    return pixel.normal == last_.normal && pixel.color == last_.color && (!textured_ || pixel.uv == last_.uv);
   }
   void shade(const RasterFragment& pixel) {
     shaded_ = true;

@@ -27,7 +27,8 @@ struct VoxelFragments {
 };
 
 /// The fragments of all static or all dynamic triangles, in draw order, cut into chunks; the cut does not depend on the
-/// number of threads. Spec section 2 (raster), steps 1 to 5.
+/// number of threads. Spec section 2 (raster), steps 1 to 5. The published program's vertices have no colours; those of
+/// glTF's multiply Kd and the opacity here, as they do in voxels that are clipped and in pixels.
 /// @param grid at most 65536 voxels a side
 std::vector<VoxelFragments> draw_fragments(const Scene& scene, const Grid& grid, bool dynamic,
                                            const Progress& progress);

@@ -75,6 +75,56 @@ TEST_CASE("The base colour's texture is looked up without decoding sRGB, and emi
   }
 }
 
+TEST_CASE("Vertex colours multiply base colour and alpha, and not emission", "[voxelize_raster]") {
+  Scene scene = scene_of(wall(5.5f, 2.25f, 9.75f), emitter("lamp", glm::vec3(0.5f, 1.0f, 1.0f), {1.0f, 0.5f, 0.0f}));
+  scene.colors = {{0, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 0, 1}, {0, 1, 0, 1}};  // red grows along x, blue falls along y
+  VoxelizeOptions plain = raster;
+  plain.average = VoxelAverage::area;
+  const SurfaceGrid surfaces = voxelize(scene, grid, plain);
+  REQUIRE(surfaces.size() == 64);
+  // Half a pixel on each side, and the diagonal by half a pixel along both axes: the lower triangle's corners, which
+  // keep their colours, lie at (0.75, 1.75), (10.25, 1.75) and (10.25, 11.25), the upper one's are mirrored.
+  for (size_t i = 0; i < surfaces.size(); ++i) {
+    const glm::ivec3& voxel = surfaces.voxels[i];
+    CHECK(surfaces.emission[i] == glm::vec3(1.0f, 0.5f, 0.0f));
+    CHECK(surfaces.albedo[i].g == 1.0f);
+    if (std::abs(voxel.x - voxel.y) < 2) continue;  // both triangles
+    CAPTURE(voxel.x, voxel.y);
+    const bool lower = voxel.x > voxel.y;
+    const double x = voxel.x + 0.5 - (lower ? 0.75 : 1.75), y = voxel.y + 0.5 - (lower ? 1.75 : 0.75);
+    CHECK(surfaces.albedo[i].r == Approx(0.5 * x / 9.5));
+    CHECK(surfaces.albedo[i].b == Approx(1.0 - y / 9.5));
+  }
+  for (glm::vec4& color : scene.colors) color = {1.0f, 1.0f, 1.0f, 0.5f};
+  CHECK(voxelize(scene, grid, plain).albedo[0] == glm::vec4(0.25f, 0.5f, 0.5f, 1.0f));
+  for (glm::vec4& color : scene.colors) color.a = 0.0f;
+  CHECK(voxelize(scene, grid, plain).size() == 0);
+}
+
+TEST_CASE("Turned the other way round, a triangle keeps its vertices' colours", "[voxelize_raster]") {
+  VoxelizeOptions plain = raster;
+  plain.average = VoxelAverage::area;
+  Scene front = scene_of(wall(5.5f, 2.25f, 9.75f)), back = front;
+  front.colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {1, 1, 0, 1}, {0, 1, 0, 1}};
+  back.colors = front.colors;
+  for (glm::uvec3& triangle : back.triangles) std::swap(triangle.y, triangle.z);
+  const SurfaceGrid a = voxelize(front, grid, plain), b = voxelize(back, grid, plain);
+  REQUIRE(a.voxels == b.voxels);
+  for (size_t i = 0; i < a.size(); ++i) CHECK(glm::distance(a.albedo[i], b.albedo[i]) < 1e-5f);  // rounding
+}
+
+TEST_CASE("Normals that cancel leave a voxel without one, in either average", "[voxelize_raster]") {
+  Scene scene = scene_of(wall(5.5f, 2.25f, 9.75f));
+  scene.normals.assign(scene.normals.size(), glm::vec3(0.0f));
+  VoxelizeOptions plain = raster;
+  plain.average = VoxelAverage::area;
+  const SurfaceGrid mean = voxelize(scene, grid, plain), bytes = voxelize(scene, grid, raster);
+  REQUIRE(mean.size() == 64);
+  const float byte = 1.0f / 255.0f;
+  for (const glm::vec3& normal : mean.normal) CHECK(normal == glm::vec3(0.0f));
+  for (const glm::vec3& normal : bytes.normal) CHECK(normal == glm::vec3(2.0f * (127 * byte) - 1.0f));
+}
+
 TEST_CASE("Alpha multiplies the colour and makes no hole unless it is 0", "[voxelize_raster]") {
   Scene scene = scene_of(wall(5.5f, 2.25f, 9.75f), lambertian("paint", glm::vec3(1.0f)));
   add_texture(scene, {255, 255, 255, 51}, false);
