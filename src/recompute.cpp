@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool averages_fragments(const Settings& settings) {
-  return settings.voxelize.method == VoxelizeMethod::raster && settings.storage == Storage::unorm8;
+  return settings.voxelize.average == VoxelAverage::running_floor8 && settings.storage == Storage::unorm8;
 }
 
 /// What is compared, and what has been found so far.
