@@ -41,6 +41,7 @@ TEST_CASE("a bad scene file is refused in one line", "[cli]") {
     check_refused(place, command + "text.glb", "text.glb");
   }
   check_refused(place, "bench missing.glb", "missing.glb");
+  check_refused(place, "bench point.glb --seconds 0.05 --rounds 1 --set grid.bounds=[[9,9,9],[10,10,10]]", "no voxel");
 }
 
 TEST_CASE("a bad command line is refused in one line that names the flag", "[cli]") {
@@ -160,8 +161,12 @@ TEST_CASE("with --json a command prints one object with the keys that scripts re
   CHECK(bench["scenes"][0]["ratio"]["min"] > 0);
   const json mesh = place.run_json("bench point.glb --mesh --rounds 1 --seconds 0.05" + small_cone);
   CHECK(mesh["scenes"][0]["scene"] == "point.glb with a mesh");
-  CHECK(bench["scenes"][0]["stages"].size() == 5);
-  for (const json& stage : bench["scenes"][0]["stages"]) CHECK(stage["count"] > 0);
+  const json& stages = bench["scenes"][0]["stages"];
+  REQUIRE(stages.size() == 6);
+  for (const json& stage : stages) CHECK(stage["count"] > 0);
+  CHECK(stages[5]["count"] == 6 * 10 * 10);  // the box, which has no gloss, fills all but the outer columns
+  REQUIRE(bench["scenes"][0]["lookups"].size() == 4);
+  for (const json& lookup : bench["scenes"][0]["lookups"]) CHECK(lookup["nanoseconds"] > 0);
   CHECK(bench["triad_bytes_per_second"] > 0);
 }
 

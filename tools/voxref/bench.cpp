@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "bench_lookups.h"
 #include "bench_mesh.h"
 #include "bench_rays.h"
 #include "bench_spread.h"
@@ -38,7 +39,7 @@ struct SceneBench {
   double occlusion_share = 0;         ///< of the path tracer's rays, and of the bare loop's
   Spread path_gain, arithmetic_gain;  ///< rates of all threads / of one: path tracing, and a loop of arithmetic alone
   std::vector<StageBench> stages;
-  LookupBench lookup;
+  std::vector<LookupBench> lookups;
 };
 
 /// A scene that has no light of its own gets a sun that stands 45 degrees high, so that there are shadow rays to cast.
@@ -118,7 +119,7 @@ SceneBench bench_scene(const std::string& file, const Options& options, const Se
   View base_test = view;  // the thesis's, table 4.3
   if (!options.view.size) base_test.width = 1280, base_test.height = 720;
   bench.stages = bench_stages(scene, caster, base_test, settings, std::min(options.rounds, 3), false, silent);
-  bench.lookup = bench_lookup(scene, settings);
+  bench.lookups = bench_lookups(scene, settings);
   return bench;
 }
 
@@ -141,8 +142,7 @@ void say(Terminal& terminal, const SceneBench& bench, double bandwidth) {
   line((threads + "paths").c_str(), bench.path_gain, "");
   line((threads + "arithmetic").c_str(), bench.arithmetic_gain, "");
   say(terminal, bench.stages, bandwidth);
-  terminal.say(fmt::format("  quadrilinear look-up {:.1f} ns, in the first cache {:.1f} ns, one thread",
-                           bench.lookup.volume, bench.lookup.bare));
+  say(terminal, bench.lookups);
 }
 
 void say_machine(Terminal& terminal, const std::string& cpu, int rounds, double bandwidth) {
@@ -191,8 +191,7 @@ int run_bench(const Options& options) {
                                 {"path_gain_of_threads", to_json(bench.path_gain)},
                                 {"arithmetic_gain_of_threads", to_json(bench.arithmetic_gain)},
                                 {"stages", to_json(bench.stages, bandwidth)},
-                                {"lookup_nanoseconds", bench.lookup.volume},
-                                {"lookup_nanoseconds_in_cache", bench.lookup.bare}});
+                                {"lookups", to_json(bench.lookups)}});
   }
   bench_published(options, terminal, result);
   terminal.result(result);

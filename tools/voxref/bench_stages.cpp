@@ -4,13 +4,13 @@
 #include <chrono>
 #include <ctime>
 #include <glm/geometric.hpp>
-#include <random>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "cone/bounce.h"
-#include "cone/interpolate_wide.h"
-#include "cone/lookup.h"
 #include "cone/render.h"
+#include "error.h"
 #include "parallel.h"
 #include "voxel/shade.h"
 
@@ -55,6 +55,37 @@ double texels_of(const BasicPyramid<Texel>& pyramid) {
   return double(texels);
 }
 
+/// Cones that a point seen in the image casts: those of the lobes that it has, and to the lights before it.
+size_t cones_of(const GBufferPoint& point, const Scene& scene, const Settings& settings, size_t diffuse) {
+  const PixelOptions& pixel = settings.render.pixel;
+  const bool phong = pixel.brdf == PixelBrdf::blinn_phong;
+  const bool matt = phong ? point.phong.diffuse != glm::vec3(0.0f) : point.reflectance.has_diffuse();
+  const bool glossy = phong ? point.phong.specular != glm::vec3(0.0f) : point.reflectance.has_specular();
+  size_t cones = (matt ? diffuse : 0) + (glossy ? 1 : 0);
+  if (pixel.shadow != PixelShadow::cone) return cones;
+  for (const Light& light : scene.lights) {
+    const Illumination lit = illuminate(light, point.position, settings.light);
+    cones += lit.attenuation != 0.0f && glm::dot(point.normal, lit.to_light) > 0.0f;
+  }
+  return cones;
+}
+
+/// Of all pixels that see something, as render_cones samples them.
+double cones_of_image(const Scene& scene, const Caster& caster, const View& view, const Settings& settings) {
+  const GBuffer gbuffer(scene, caster, view, settings.render.gbuffer);
+  const size_t diffuse = pixel_cones(settings.render.cone.diffuse).cones.size();
+  const int side = view.pixel == PixelSampling::center ? 1 : 4;  // as render_cones
+  std::vector<size_t> rows(size_t(view.height));
+  parallel_for(rows.size(), 1, [&](size_t y, size_t) {
+    for (int i = 0; i < view.width * side * side; ++i) {
+      const int x = i / (side * side), at = i % (side * side);
+      const glm::vec2 offset = (glm::vec2(at % side, at / side) + 0.5f) / float(side);
+      if (const auto point = gbuffer(glm::vec2(x, y) + offset)) rows[y] += cones_of(*point, scene, settings, diffuse);
+    }
+  });
+  return double(std::accumulate(rows.begin(), rows.end(), size_t{0}));
+}
+
 template <class Texel>
 std::vector<StageBench> bench(const Scene& scene, const Caster& caster, const View& view, const Settings& settings,
                               const Stopwatch& watch) {
@@ -64,6 +95,7 @@ std::vector<StageBench> bench(const Scene& scene, const Caster& caster, const Vi
   StageBench voxelized = watch(
       "voxelize", "voxels", [&] { return std::exchange(surfaces, {}).size(); },
       [&](size_t) { surfaces = voxelize(scene, grid, settings.voxelize); });
+  if (surfaces.size() == 0) throw Error("SCENE", "occupies no voxel, so that there is nothing to measure");
   voxelized.count = double(surfaces.size());
   voxelized.bytes = double(surfaces.bytes());
 
@@ -95,40 +127,24 @@ std::vector<StageBench> bench(const Scene& scene, const Caster& caster, const Vi
   bounce_bench.count = voxelized.count * double(voxel_cones(once.cones).cones.size());
   bounce_bench.bytes = voxelized.bytes + lit + 2.0 * filtered.bytes;
 
-  const LitVolume volume = lit_volume(std::move(bounced.pyramid), settings.render.cone.opacity, settings.mipmap.filter);
-  const LitScene from{scene, caster, volume, settings.grid.bounds.value_or(scene.bounds()), settings.light};
+  LitVolume volume;
+  std::optional<LightVisibility> visibility;
+  StageBench prepared = watch(
+      "prepare", "texels", [&] { return bounced.pyramid; },
+      [&](BasicPyramid<Texel>&& input) {
+        volume = lit_volume(std::move(input), settings.render.cone.opacity, settings.mipmap.filter);
+        if (settings.render.pixel.shadow == PixelShadow::visibility) visibility.emplace(surfaces, shading.visibility);
+      });
+  prepared.count = filtered.count;
+  prepared.bytes = filtered.bytes;
+
+  const LitScene from{scene,          caster,
+                      volume,         settings.grid.bounds.value_or(scene.bounds()),
+                      settings.light, visibility ? &*visibility : nullptr};
   StageBench image = watch("image", "cones", nothing, [&](int) { render_cones(from, view, settings.render); });
-  const double specular_and_shadow = 1.0 + (settings.render.pixel.shadow == PixelShadow::cone ? 1.0 : 0.0);
-  const double per_pixel = double(pixel_cones(settings.render.cone.diffuse).cones.size()) + specular_and_shadow;
-  image.count = per_pixel * view.width * view.height;
+  image.count = cones_of_image(scene, caster, view, settings);
   image.bytes = filtered.bytes;
-  return {voxelized, shaded, filtered, bounce_bench, image};
-}
-
-template <class Kernel>
-inline Float4 sum_of_lookups(const Medium& medium, const std::vector<glm::vec4>& samples, const OpticalRead& read) {
-  Float4 sum{};
-  for (const glm::vec4& sample : samples) sum += quadrilinear<Kernel>(medium, load(sample), sample.w, read);
-  return sum;
-}
-VOXREF_WIDE_ALL Float4 sum_of_wide_lookups(const Medium& medium, const std::vector<glm::vec4>& samples,
-                                           const OpticalRead& read) {
-  return sum_of_lookups<WideKernel>(medium, samples, read);
-}
-
-/// Look-ups at positions and levels that are made before the clock runs.
-double lookup_nanoseconds(const Medium& medium, const std::vector<glm::vec4>& samples) {
-  const OpticalRead read(glm::normalize(glm::vec3(0.5f, -0.3f, 0.8f)));
-  double best = 1e9;
-  Float4 sum{};
-  for (int round = 0; round < 5; ++round) {
-    const double start = processor_seconds();
-    sum +=
-        wide_machine ? sum_of_wide_lookups(medium, samples, read) : sum_of_lookups<PlainKernel>(medium, samples, read);
-    best = std::min(best, processor_seconds() - start);
-  }
-  // What nobody uses the compiler would leave out.
-  return sum[3] < 0.0f ? 0.0 : 1e9 * best / double(samples.size());
+  return {voxelized, shaded, filtered, bounce_bench, prepared, image};
 }
 
 }  // namespace
@@ -154,30 +170,6 @@ double triad_bandwidth() {
     best = std::max(best, 3.0 * count * sizeof(float) / (wall_seconds() - start));
   }
   return best;
-}
-
-LookupBench bench_lookup(const Scene& scene, const Settings& settings) {
-  const SurfaceGrid surfaces = voxelize(scene, fit_grid(scene.bounds(), settings.grid), settings.voxelize);
-  const std::vector<glm::vec3> white(surfaces.size(), glm::vec3(1.0f));
-  const Medium medium = make_medium(mipmap(surfaces, white, settings.mipmap));
-  std::mt19937 random(1);
-  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  constexpr size_t count = size_t{1} << 18;
-  const float top = std::min(4.0f, float(medium.top()));
-  std::vector<glm::vec4> far, near;
-  for (size_t i = 0; i < count; ++i) {
-    const glm::ivec3& voxel = surfaces.voxels[random() % surfaces.size()];
-    const glm::vec3 inside(uniform(random), uniform(random), uniform(random));
-    far.emplace_back(glm::vec3(voxel) + inside, top * uniform(random));
-    near.emplace_back(2.0f + 4.0f * inside, uniform(random));
-  }
-  Grid small;
-  small.size = glm::ivec3(8);  // 8 KiB, and 6 KiB of the level above
-  BrickVolume<glm::vec4> full(small.size);
-  full.allocate(std::vector{glm::ivec3(0)});
-  std::ranges::fill(full.texels(), glm::vec4(0.5f));
-  return {lookup_nanoseconds(medium, far),
-          lookup_nanoseconds(make_medium(mipmap(small, std::move(full), MipmapOptions{})), near)};
 }
 
 }  // namespace voxref

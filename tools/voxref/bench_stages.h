@@ -20,8 +20,8 @@ struct StageBench {
   std::vector<double> seconds;  ///< one per round
 };
 
-/// Voxelize, shade, mipmap, one bounce, and the image, each as often as asked. Times are the clock's on the wall, or
-/// the processor's (all threads together).
+/// Voxelize, shade, mipmap, one bounce, making the volume ready, and the image, each as often as asked. Times are the
+/// clock's on the wall, or the processor's (all threads together). @throws Error for a scene that occupies no voxel
 std::vector<StageBench> bench_stages(const Scene& scene, const Caster& caster, const View& view,
                                      const Settings& settings, int rounds, bool processor_time,
                                      const Progress& progress);
@@ -29,14 +29,6 @@ std::vector<StageBench> bench_stages(const Scene& scene, const Caster& caster, c
 /// Bytes per second that a[i] = b[i] + s c[i] moves over arrays beyond the caches, with all threads: the best of
 /// several runs (McCalpin's STREAM triad; what a write reads before it is not counted).
 double triad_bandwidth();
-
-/// Nanoseconds of one quadrilinear look-up, on one thread.
-struct LookupBench {
-  double volume = 0;  ///< at the scene's occupied voxels in an order of their own, levels 0 to 4
-  double bare = 0;    ///< the same function on a volume that fits the first cache
-};
-/// Of the radiometric medium of float32 texels.
-LookupBench bench_lookup(const Scene& scene, const Settings& settings);
 
 // Medians, one line or object per stage, beside the bandwidth of the triad,
 void say(Terminal& terminal, const std::vector<StageBench>& stages, double bandwidth);

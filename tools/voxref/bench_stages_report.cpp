@@ -26,6 +26,7 @@ double seconds_of(const std::vector<StageBench>& stages, const std::string& stag
 double same_work(const std::vector<StageBench>& stages, const std::string& stage) {
   const double mipmap = seconds_of(stages, "mipmap");
   if (stage == "mipmap") return 2.0 * mipmap;
+  if (stage == "image") return seconds_of(stages, "prepare") + seconds_of(stages, stage);
   return seconds_of(stages, stage) - (stage == "bounce" ? mipmap : 0.0);
 }
 
