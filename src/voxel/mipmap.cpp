@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "parallel.h"
 
@@ -14,7 +15,7 @@ namespace {
 using Block = std::array<Float4, 8>;
 
 /// Children at the positive end of the four columns along each axis, in the order in which the published shaders add
-/// them (spec section 4): float sums then have the same bits.
+/// them (spec section 4).
 constexpr size_t columns[3][4] = {
     {7, 3, 5, 1},  // x: (y,z) = (1,1) (1,0) (0,1) (0,0)
     {7, 3, 2, 6},  // y: (x,z) = (1,1) (1,0) (0,0) (0,1)
@@ -54,18 +55,27 @@ bool is_empty(const Below* corner) {
   return any == 0;
 }
 
-/// One face of a texel. Rounding never lifts opacity above 1: with the sum of the columns before at most c, a whole
-/// number, the next is at most round(round(c + f) + round(1 - f)) where f is the front's opacity; the three roundings
-/// together miss c + 1 by at most half a unit in its last place (both addends are multiples of 2^-24, and ties go to
-/// the even c + 1).
+/// One face of a texel that is stored as `Texel`. Bytes are summed in the published shaders' order, so that they are
+/// theirs to the bit; floats in pairs, so that a mirrored block has the same bits, and a turned one two roundings of
+/// its own. Rounding never lifts opacity above 1: with the sum of the columns before at most c, a whole number, the
+/// next is at most round(round(c + f) + round(1 - f)) where f is the front's opacity; the three roundings together miss
+/// c + 1 by at most half a unit in its last place (both addends are multiples of 2^-24, and ties go to the even c + 1).
+template <class Texel>
 Float4 filter_face(const Block& block, size_t face) {
   const size_t axis = face / 2, along = size_t{1} << axis;
   const bool negative = face % 2 == 0;  // towards the negative side a ray meets the higher coordinate first
+  const auto near = [&](size_t i) { return block[columns[axis][i] - (negative ? 0 : along)]; };
+  const auto far = [&](size_t i) { return block[columns[axis][i] - (negative ? along : 0)]; };
+  const auto behind = [&](size_t i) { return far(i) * (1.0f - near(i)[3]); };
   Float4 sum{};
-  for (const size_t high : columns[axis]) {
-    const Float4 &near = block[negative ? high : high - along], &far = block[negative ? high - along : high];
-    sum += near;
-    sum += far * (1.0f - near[3]);
+  if constexpr (std::is_same_v<Texel, Rgba8>) {
+    for (size_t i = 0; i < 4; ++i) {
+      sum += near(i);
+      sum += behind(i);
+    }
+  } else {
+    const auto column = [&](size_t i) { return near(i) + behind(i); };
+    sum = (column(0) + column(1)) + (column(2) + column(3));
   }
   return 0.25f * sum;
 }
@@ -74,14 +84,14 @@ template <class Texel>
 Directional<Texel> filter_anisotropic(const Texel* corner) {
   const Block block = seen_block(corner, 0);  // decoded once for all faces
   Directional<Texel> result;
-  for (size_t face = 0; face < result.size(); ++face) result[face] = encode<Texel>(filter_face(block, face));
+  for (size_t face = 0; face < result.size(); ++face) result[face] = encode<Texel>(filter_face<Texel>(block, face));
   return result;
 }
 template <class Texel>
 Directional<Texel> filter_anisotropic(const Directional<Texel>* corner) {
   Directional<Texel> result;
   for (size_t face = 0; face < result.size(); ++face)
-    result[face] = encode<Texel>(filter_face(seen_block(corner, face), face));
+    result[face] = encode<Texel>(filter_face<Texel>(seen_block(corner, face), face));
   return result;
 }
 
