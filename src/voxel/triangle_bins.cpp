@@ -86,7 +86,7 @@ TriangleBins bin_triangles(const VoxelTriangles& triangles, const std::vector<bo
   result.triangles.resize(total);
   for (auto& entries : chunks) {
     for (const Entry& entry : entries) result.triangles[next[entry.brick]++] = entry.triangle;
-    entries = {};
+    entries = std::vector<Entry>();  // {} would keep the memory
   }
   return result;
 }

@@ -120,7 +120,7 @@ SurfaceGrid VolumeFolder::surfaces() const {
     read_sparse(entry("emission"), surfaces, 3,
                 [&](size_t i, std::span<const float> texel) { surfaces.emission[i] = rgb(texel); });
     const auto dark = [](const glm::vec3& emission) { return emission == glm::vec3(0.0f); };
-    if (std::ranges::all_of(surfaces.emission, dark)) surfaces.emission = {};
+    if (std::ranges::all_of(surfaces.emission, dark)) surfaces.emission = std::vector<glm::vec3>();
   }
   return surfaces;
 }

@@ -189,7 +189,7 @@ SurfaceGrid merge(const Grid& grid, std::vector<std::vector<Voxel>>&& bricks, bo
   resize(surfaces, next.back(), emission);
   for (auto& brick : bricks) {
     for (const Voxel& voxel : brick) store(surfaces, next[row(voxel.index)]++, voxel);
-    brick = {};
+    brick = std::vector<Voxel>();  // {} would keep the memory
   }
   return surfaces;
 }
