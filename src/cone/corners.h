@@ -41,7 +41,7 @@ inline auto visit_corners(const BrickVolume<Texel>& volume, size_t brick, size_t
   using Result = decltype(visit(Corners<Texel>{}));
   const uint32_t* slots = volume.slots() + brick;
   if (inner) {
-    if (*slots == Volume::absent) return Result{};
+    if (*slots == Volume::absent) return Result();
     return visit(BrickCorners<Texel>{volume.data() + *slots * Volume::texels_per_brick + texel});
   }
   const glm::ivec3& bricks = volume.brick_grid();

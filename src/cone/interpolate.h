@@ -14,7 +14,7 @@ struct FaceRead {
   /// @param shares of the axes
   FaceRead(const glm::vec3& direction, const glm::vec3& shares) {
     for (int axis = 0; axis < 3; ++axis) {
-      faces[size_t(axis)] = size_t(2 * axis + !(direction[axis] < 0.0f));  // Face: negative before positive, x y z
+      faces[size_t(axis)] = 2 * size_t(axis) + !(direction[axis] < 0.0f);  // Face: negative before positive, x y z
       weights[size_t(axis)] = shares[axis];
     }
   }
