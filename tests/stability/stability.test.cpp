@@ -63,8 +63,7 @@ const std::map<std::string, double> measured = {
     {"gain_error", 0.013},
     {"gain_excess", 0.0},
     {"gain_total_error", 0.137},
-    {"gain_total_theory_gap",
-     0.0037},  // the gain is that of the last bounce; the first one's light is spread otherwise
+    {"gain_total_theory_gap", 0.0037},  // of the last bounce; what the first brings is spread otherwise
     {"gain_unrefused", 0.0},
     {"cone_factor", 0.00973},
     {"cone_factor_theory_gap", 0.000389},  // 1.189 and 1.143 are rounded to 0.0005

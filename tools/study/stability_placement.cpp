@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "compare/statistics.h"
-#include "error.h"
 #include "make_scenes/builders.h"
 #include "make_scenes/catalog.h"
 #include "study/curves.h"
@@ -106,19 +105,19 @@ Failure distance() {
   double reach = 0.0, off = 0.0, silent = 0.0;
   for (const float away : {1.0f, 1e1f, 1e2f, 1e3f, 1e4f, 1e5f, 1e6f}) {
     const double rounding = double(away) * 0x1p-24 / voxel;
-    try {
-      const Scene moved = placed(box, glm::mat3(1.0f), glm::vec3(away, 0.0f, 0.0f));
-      const double ratio = mean_luminance(trace(moved, settings, box_width)) / usual;
-      failure.table.add({double(away), rounding, ratio, 100.0 * (ratio - 1.0), "rendered"});
-      constexpr double tolerable = 0.05;
-      if (std::abs(ratio - 1.0) <= tolerable)
-        reach = std::max(reach, std::log10(double(away)));
-      else
-        ++silent;
-      if (away <= 1e3f) off = worst_of({off, std::abs(ratio - 1.0)});
-    } catch (const Error& error) {
-      failure.table.add({double(away), rounding, Cell{}, Cell{}, std::string("refused: ") + error.what()});
+    const TryTrace moved(placed(box, glm::mat3(1.0f), glm::vec3(away, 0.0f, 0.0f)), settings, box_width);
+    if (!moved.result) {
+      failure.table.add({double(away), rounding, Cell{}, Cell{}, moved.outcome});
+      continue;
     }
+    const double ratio = mean_luminance(*moved.result) / usual;
+    failure.table.add({double(away), rounding, ratio, 100.0 * (ratio - 1.0), moved.outcome});
+    constexpr double tolerable = 0.05;
+    if (std::abs(ratio - 1.0) <= tolerable)
+      reach = std::max(reach, std::log10(double(away)));
+    else
+      ++silent;
+    if (away <= 1e3f) off = worst_of({off, std::abs(ratio - 1.0)});
   }
   failure.charts.push_back(
       {"stability_distance",

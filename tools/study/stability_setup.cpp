@@ -6,6 +6,7 @@
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
+#include "error.h"
 #include "image/image.h"
 #include "make_scenes/assemble.h"
 #include "make_scenes/builders.h"
@@ -94,6 +95,14 @@ ConeTraceResult trace(const Scene& scene, const Settings& settings, int width, s
   View view;
   view.camera = scene.cameras.at(camera);
   return cone_trace(scene, Caster(scene), sized(view, width), settings);
+}
+
+TryTrace::TryTrace(const Scene& scene, const Settings& settings, int width) : outcome("rendered") {
+  try {
+    result = trace(scene, settings, width);
+  } catch (const Error& error) {
+    outcome = std::string("refused: ") + error.what();
+  }
 }
 
 double mean_luminance(const ConeTraceResult& result) { return double(luminance(result.mean)); }

@@ -1,6 +1,8 @@
 #pragma once
 #include <glm/mat3x3.hpp>
 #include <initializer_list>
+#include <optional>
+#include <string>
 
 #include "cone/gather.h"
 #include "make_scenes/mesh.h"
@@ -46,6 +48,14 @@ Settings small_settings(int resolution);
 /// The whole pipeline, seen by one of the scene's cameras. @param width pixels
 ConeTraceResult trace(const Scene& scene, const Settings& settings, int width, size_t camera = 0);
 double mean_luminance(const ConeTraceResult& result);
+
+/// trace() of what may be refused, which then leaves no result.
+struct TryTrace {
+  TryTrace(const Scene& scene, const Settings& settings, int width);
+
+  std::optional<ConeTraceResult> result;
+  std::string outcome;  ///< "rendered", or "refused: why"
+};
 
 /// Of the Cornell box with a point light, 32 voxels, 16 pixels wide: what it shows where nothing is changed.
 inline constexpr int box_voxels = 32, box_width = 16;
