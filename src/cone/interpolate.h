@@ -4,8 +4,8 @@
 #include <glm/vec3.hpp>
 
 #include "cone/corners.h"
-#include "cone/float4.h"
 #include "cone/optical_texel.h"
+#include "voxel/float4.h"
 
 namespace voxref {
 

@@ -3,13 +3,11 @@
 
 #include <glm/vec3.hpp>
 
-#include "cone/float4.h"
+#include "voxel/float4.h"
 
 namespace voxref {
 
-/// Three integers in one register; the fourth says nothing.
-using Int4 = int32_t __attribute__((vector_size(16)));
-
+/// The fourth says nothing.
 inline Int4 to_int4(const glm::ivec3& v) { return Int4{v.x, v.y, v.z, 0}; }
 inline glm::ivec3 to_ivec3(const Int4& v) { return {v[0], v[1], v[2]}; }
 inline Float4 to_float4(const glm::vec3& v) { return Float4{v.x, v.y, v.z, 0.0f}; }

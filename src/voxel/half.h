@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "cone/float4.h"
+#include "voxel/float4.h"
 
 namespace voxref {
 
@@ -16,7 +16,6 @@ using Half4 = std::array<uint16_t, 4>;
 inline constexpr float greatest_half = 65504.0f;
 
 namespace half_detail {
-using Int4 = int32_t __attribute__((vector_size(16)));
 inline constexpr int32_t sign_bit = INT32_MIN;
 inline constexpr int32_t infinity = 0x7f800000;  ///< float32's; above it are the NaNs
 }  // namespace half_detail

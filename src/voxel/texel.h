@@ -11,7 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "cone/float4.h"
+#include "voxel/float4.h"
 #include "voxel/half.h"
 
 namespace voxref {

@@ -9,6 +9,9 @@ namespace voxref {
 /// element, so that results are those of plain floats.
 using Float4 = float __attribute__((vector_size(16)));
 
+/// Three or four integers in one register.
+using Int4 = int32_t __attribute__((vector_size(16)));
+
 /// Eight side by side: of two texels, or one number of eight samples. Functions take them by reference, since how they
 /// are passed by value depends on the instruction set.
 using Float8 = float __attribute__((vector_size(32)));
