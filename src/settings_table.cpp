@@ -98,12 +98,11 @@ Parameter choice(std::string key, std::vector<std::string> names, std::string me
 /// A count of cones, or the name of the published shaders' own set.
 template <class Field>
 Parameter cone_count(std::string key, const std::string& published, std::string meaning, Field field) {
-  constexpr int most = 16384;  // partition_hemisphere's
-  const std::string range = fmt::format("1 to {}, {}", most, published);
+  const std::string range = fmt::format("1 to {}, {}", most_cones, published);
   return {key, range, std::move(meaning),
           [=](const Settings& s) { return field(s) == published_cones ? json(published) : json(field(s)); },
           [=](Settings& s, const json& value) {
-            field(s) = value == published ? published_cones : parse_integer(key, value, 1, most, range);
+            field(s) = value == published ? published_cones : parse_integer(key, value, 1, most_cones, range);
           }};
 }
 
@@ -150,8 +149,8 @@ Parameter light_attenuation() {
 std::vector<Parameter> grid_and_voxel_parameters() {
   return {
       integer(
-          "grid.resolution", 16, 2048, "voxels along the longest side",
-          [](auto& s) -> auto& { return s.grid.resolution; }),
+          "grid.resolution", GridOptions::least_resolution, GridOptions::most_resolution,
+          "voxels along the longest side", [](auto& s) -> auto& { return s.grid.resolution; }),
       flag(
           "grid.cubic", "a cube from the scene's minimum corner instead of a fitted box",
           [](auto& s) -> auto& { return s.grid.cubic; }),
@@ -213,7 +212,8 @@ std::vector<Parameter> image_parameters() {
           "cone.diffuse", "villegas6", "cones over the hemisphere of each pixel",
           [](auto& s) -> auto& { return s.render.cone.diffuse; }),
       number(
-          "cone.step", 0.01f, 4.0f, "step length in cone diameters",
+          "cone.step", 0.01f, 4.0f,
+          "step length in texels that the cone reads, about its diameter wide; of raw cones: in diameters",
           [](auto& s) -> auto& { return s.render.cone.step; }),
       number(
           "cone.start", 0.0f, 16.0f, "voxels from the surface to a cone's apex",

@@ -58,7 +58,8 @@ void add_ring(std::vector<Cone>& cones, int count, double cos0, double cos1, flo
 }  // namespace
 
 std::vector<Cone> partition_hemisphere(int count) {
-  if (count < 1 || count > 16384) throw Error("cone count", std::to_string(count) + " is outside the range 1 to 16384");
+  if (count < 1 || count > most_cones)
+    throw Error("cone count", std::to_string(count) + " is outside the range 1 to " + std::to_string(most_cones));
   const double omega = 2.0 * pi / count;
   // Half-angle a with 2 pi (1 - cos a) = omega; one cone for everything would be 90 degrees, of which no cube of texels
   // is a picture, so that 60 degrees are the widest.

@@ -15,10 +15,11 @@ struct Cone {
 /// In place of a count of cones: the directions and weights that the published shaders use, four at voxels and six at
 /// pixels.
 inline constexpr int published_cones = 0;
+inline constexpr int most_cones = 16384;  ///< over a hemisphere
 
 /// Cones that partition the hemisphere into cells of equal solid angle: a polar cap and rings around it, ring counts
 /// chosen so that cells are about as wide as high (after Beckers and Beckers 2012); two and three cones are sectors. A
-/// cone points along its cell's cosine-weighted mean direction. @param count 1 to 16384 @throws Error out of range
+/// cone points along its cell's cosine-weighted mean direction. @param count 1 to most_cones @throws Error out of range
 std::vector<Cone> partition_hemisphere(int count);
 
 /// How well circular cones stand in for their cells, as fractions of the hemisphere's solid angle, by quadrature.

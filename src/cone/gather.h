@@ -14,10 +14,10 @@ enum class ConeOpacity : uint8_t {
 };
 
 struct ConeOptions {
-  int diffuse = 6;    ///< cones over the hemisphere, 1 to 16384, or published_cones
+  int diffuse = 6;    ///< cones over the hemisphere, 1 to most_cones, or published_cones
   float step = 0.5f;  ///< see MarchOptions::step
-  float start =
-      1.5f;  ///< voxels along the normal (times the normal's 1-norm) from the surface to a cone's apex, 0 to 8
+  /// Voxels along the normal (of extinction times the normal's 1-norm) from the surface to a cone's apex, 0 to 16.
+  float start = 1.5f;
   ConeOpacity opacity = ConeOpacity::extinction;
   std::optional<float> max_distance{};  ///< of raw cones, in the grid's longest sides; none: to the box's end
   float raw_unit = 2.0f;  ///< of raw cones: first distance, and width of the finest texels; voxels, above 0

@@ -46,10 +46,9 @@ class Renderer {
         shade_(lit, options, view.background),
         phong_(options.pixel.brdf == PixelBrdf::blinn_phong) {}
 
-  /// Mean over the pixel's sub-positions: its centre, or a regular 4 x 4 grid (as finely as cone tracing, which is
-  /// smooth over a voxel, can tell; edges keep 16 shades).
+  /// Mean over the pixel's positions.
   Seen pixel(int x, int y) const {
-    const int side = view_.pixel == PixelSampling::center ? 1 : 4;
+    const int side = positions_per_side(view_.pixel);
     Seen sum;
     for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i) {

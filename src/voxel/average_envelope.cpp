@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <tuple>
 
 #include "parallel.h"
 #include "voxel/raster_fragments.h"
@@ -73,9 +72,7 @@ struct VoxelFragment {
   FragmentValue value;
 };
 
-bool before(const VoxelFragment& a, const VoxelFragment& b) {
-  return std::tie(a.voxel.z, a.voxel.y, a.voxel.x) < std::tie(b.voxel.z, b.voxel.y, b.voxel.x);
-}
+bool before(const VoxelFragment& a, const VoxelFragment& b) { return voxref::before(a.voxel, b.voxel); }
 
 std::array<AverageEnvelope, 3> envelopes(std::span<const VoxelFragment> fragments, glm::vec3 FragmentValue::*value) {
   std::array<AverageEnvelope, 3> result;

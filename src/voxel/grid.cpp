@@ -12,7 +12,6 @@ namespace voxref {
 
 namespace {
 
-constexpr int min_resolution = 16, max_resolution = 2048;
 constexpr int margins = 3;   // two of 1.5 voxels
 constexpr int min_side = 4;  // below it a coarse level would be all margin
 // A surface without depth along an axis gets an odd count, so that it lies at voxel centres too.
@@ -38,9 +37,9 @@ int voxels_along(double extent, double voxel) {
 
 void require_resolution(const GridOptions& options) {
   const std::string given = std::to_string(options.resolution);
-  if (options.resolution < min_resolution || options.resolution > max_resolution)
-    throw Error("grid.resolution",
-                given + " is outside " + std::to_string(min_resolution) + " to " + std::to_string(max_resolution));
+  constexpr int least = GridOptions::least_resolution, most = GridOptions::most_resolution;
+  if (options.resolution < least || options.resolution > most)
+    throw Error("grid.resolution", given + " is outside " + std::to_string(least) + " to " + std::to_string(most));
   if (options.cubic && (options.resolution & (options.resolution - 1)) != 0)
     throw Error("grid.resolution", given + " is not a power of two, which grid.cubic asks for");
 }

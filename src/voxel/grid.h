@@ -1,13 +1,16 @@
 #pragma once
 #include <glm/vec3.hpp>
 #include <optional>
+#include <tuple>
 
 #include "scene/scene.h"
 
 namespace voxref {
 
 struct GridOptions {
-  int resolution = 256;  ///< voxels along the longest side, 16 to 2048; with `cubic` a power of two
+  static constexpr int least_resolution = 16, most_resolution = 2048;
+
+  int resolution = 256;  ///< voxels along the longest side, in that range; with `cubic` a power of two
   bool cubic = false;    ///< a cube from the box's minimum corner, without margin, as the published shaders do
   std::optional<Bounds> bounds{};  ///< box in place of the scene's own, world units; taken as it is, without margin
 };
@@ -30,6 +33,11 @@ struct Grid {
   }
   size_t voxel_count() const { return size_t(size.x) * size_t(size.y) * size_t(size.z); }
 };
+
+/// The order of voxels: by z, then y, then x.
+inline bool before(const glm::ivec3& a, const glm::ivec3& b) {
+  return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
+}
 
 /// Fits a grid around `bounds`: h = longest side / (resolution - 3), at least 4 voxels a side, the box centred, at
 /// least 1.5 voxels of margin, so that walls on the bounds of the longest axis lie at voxel centres rather than on

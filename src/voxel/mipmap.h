@@ -31,10 +31,9 @@ struct MipmapOptions {
 /// Premultiplied radiance (rgb) and opacity (a), six faces.
 using DirectionalTexel = Directional<glm::vec4>;
 
-/// Radiance and opacity of a grid at all scales, held in texels of one storage: glm::vec4, Rgba16f or
-/// Rgba8. Level k of `levels`
-/// has texels of 2^(k+1) voxels a side and ceil(size / 2^(k+1)) of them, anchored at the grid's minimum corner (what
-/// sticks out is empty), down to 1x1x1.
+/// Radiance and opacity of a grid at all scales, held in texels of one storage: glm::vec4, Rgba16f or Rgba8. Level k of
+/// `levels` has texels of 2^(k+1) voxels a side and ceil(size / 2^(k+1)) of them, anchored at the grid's minimum corner
+/// (what sticks out is empty), down to 1x1x1.
 template <class Texel>
 struct BasicPyramid {
   Grid grid;
@@ -48,7 +47,8 @@ using Pyramid16 = BasicPyramid<Rgba16f>;
 using Pyramid8 = BasicPyramid<Rgba8>;
 
 /// Spec section 4. For each of the four columns of a 2x2x2 block along the face's axis front + back (1 - alpha_front),
-/// all four channels premultiplied; the value is the mean of the four columns, rounded to what the texel can hold.
+/// all four channels premultiplied; the value is the mean of the four columns, rounded to what the texel can hold. In
+/// bytes it is summed in the published shaders' order.
 /// @param radiance one per occupied voxel, as `shade` returns it (not premultiplied)
 template <class Texel = glm::vec4>
 BasicPyramid<Texel> mipmap(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance,

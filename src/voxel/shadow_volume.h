@@ -16,8 +16,8 @@ class ShadowVolume {
   explicit ShadowVolume(const SurfaceGrid& surfaces);
 
   /// 1 - v, where v grows by (1 - v) k / t at every sample whose trilinear filter meets an occupied voxel, t from 2 in
-  /// steps of 1 voxel. Above 1 only in theory; below 0 where hits come close to the start.
-  /// @param direction unit @param hit k = hit^2; above 1 the first hit ends in darkness
+  /// steps of 1 voxel, as long as v is at most 1: in [0,1], but for a last hit with k > t.
+  /// @param direction unit @param hit k = hit^2; where k is above 1 the first hit ends in darkness
   float visibility(const glm::vec3& from, const glm::vec3& direction, float distance, float hit) const;
 
   size_t bytes() const;

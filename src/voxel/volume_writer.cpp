@@ -145,14 +145,6 @@ void VolumeFolderWriter::write_radiance(const SurfaceGrid& surfaces, std::span<c
 }
 
 template <class Texel>
-void VolumeFolderWriter::write_base(const BrickVolume<Texel>& base, bool bounced) {
-  const VolumeEntry volume = light_entry(radiance_name(bounced), base.size(), bounced ? "bounce" : "shade");
-  write(volume, [&](size_t z, std::span<float> slice) {
-    fill_slice(base, int(z), slice, [](const Texel& texel) { return texel; });
-  });
-}
-
-template <class Texel>
 void VolumeFolderWriter::write_levels(const BasicPyramid<Texel>& pyramid, bool bounced) {
   for (size_t face = 0; face < face_names.size(); ++face)
     for (size_t level = 0; level < pyramid.levels.size(); ++level) {
@@ -167,9 +159,6 @@ void VolumeFolderWriter::write_levels(const BasicPyramid<Texel>& pyramid, bool b
     }
 }
 
-template void VolumeFolderWriter::write_base(const BrickVolume<glm::vec4>&, bool);
-template void VolumeFolderWriter::write_base(const BrickVolume<Rgba16f>&, bool);
-template void VolumeFolderWriter::write_base(const BrickVolume<Rgba8>&, bool);
 template void VolumeFolderWriter::write_levels(const Pyramid&, bool);
 template void VolumeFolderWriter::write_levels(const Pyramid16&, bool);
 template void VolumeFolderWriter::write_levels(const Pyramid8&, bool);

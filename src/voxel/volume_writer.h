@@ -15,11 +15,11 @@ namespace voxref {
 /// A folder of volumes: volumes.json beside one NumPy .npy file per volume, shape (Z, Y, X, C), dense (cli.md,
 /// "Volumes"): albedo (a = opacity), normal, emission, visibility, radiance, radiance_bounce, aniso_<face>_<level>,
 /// aniso_bounce_<face>_<level>. Radiance and aniso volumes are premultiplied. In float32 there is centroid (world) too,
-/// and emission only where the scene has it. In float16 those of radiance and opacity are
-/// float16. In unorm8 volumes are uint8, normals as 0.5 n + 0.5, and static_flag is
-/// there; of voxels that count their fragments, albedo, normal and emission have the count as alpha. Files appear whole
-/// or not at all, and all of them or none; volumes.json goes away with the first volume that is written and comes back
-/// last, so that it never describes a mixture. Volumes pass through memory a slice at a time.
+/// and emission only where the scene has it. In float16 those of radiance and opacity are float16. In unorm8 volumes
+/// are uint8, normals as 0.5 n + 0.5, and static_flag is there; of voxels that count their fragments, albedo, normal
+/// and emission have the count as alpha. Files appear whole or not at all, and all of them or none; volumes.json goes
+/// away with the first volume that is written and comes back last, so that it never describes a mixture. Volumes pass
+/// through memory a slice at a time.
 class VolumeFolderWriter {
  public:
   /// Makes the folder, and those above it, where they are missing. @throws Error with the path
@@ -33,8 +33,6 @@ class VolumeFolderWriter {
   /// @param radiance one per voxel of `surfaces`, not premultiplied
   /// @param bounced names it radiance_bounce instead of radiance; so below
   void write_radiance(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance, bool bounced);
-  template <class Texel>
-  void write_base(const BrickVolume<Texel>& base, bool bounced);
   template <class Texel>
   void write_levels(const BasicPyramid<Texel>& pyramid, bool bounced);
   /// Writes volumes.json. Nothing that was written counts before.

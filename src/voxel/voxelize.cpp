@@ -1,7 +1,6 @@
 #include "voxel/voxelize.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "voxel/brick_volume.h"
 #include "voxel/voxelize_exact.h"
@@ -10,8 +9,6 @@
 namespace voxref {
 
 namespace {
-
-bool before(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
 
 /// Builds a grid voxel by voxel out of those of two others that have areas.
 class AreaMerge {
@@ -75,6 +72,14 @@ SurfaceGrid empty_grid(const Grid& grid) {
 }
 
 }  // namespace
+
+void SurfaceGrid::resize(size_t count, bool emits) {
+  voxels.resize(count);
+  albedo.resize(count);
+  normal.resize(count);
+  centroid.resize(count);
+  if (emits) emission.resize(count);
+}
 
 size_t SurfaceGrid::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };

@@ -42,6 +42,8 @@ struct SurfaceGrid {
   std::vector<glm::vec3> centroid;  ///< world
   std::vector<glm::vec3> emission;  ///< mean emitted radiance, W/(sr m^2); empty: nothing in the scene emits
   size_t size() const { return voxels.size(); }
+  /// Of what every grid has, and of emission where there is some. @param emits anything in the scene
+  void resize(size_t count, bool emits);
   size_t bytes() const;
 };
 

@@ -157,15 +157,6 @@ class BrickVoxelizer {
   std::vector<Facet> facets_;
 };
 
-void resize(SurfaceGrid& surfaces, size_t count, bool emission) {
-  surfaces.voxels.resize(count);
-  surfaces.area.resize(count);
-  surfaces.albedo.resize(count);
-  surfaces.normal.resize(count);
-  surfaces.centroid.resize(count);
-  if (emission) surfaces.emission.resize(count);
-}
-
 void store(SurfaceGrid& surfaces, size_t i, const Voxel& voxel) {
   surfaces.voxels[i] = voxel.index;
   surfaces.area[i] = voxel.area;
@@ -186,7 +177,8 @@ SurfaceGrid merge(const Grid& grid, std::vector<std::vector<Voxel>>&& bricks, bo
 
   SurfaceGrid surfaces;
   surfaces.grid = grid;
-  resize(surfaces, next.back(), emission);
+  surfaces.resize(next.back(), emission);
+  surfaces.area.resize(surfaces.size());
   for (auto& brick : bricks) {
     for (const Voxel& voxel : brick) store(surfaces, next[row(voxel.index)]++, voxel);
     brick = std::vector<Voxel>();  // {} would keep the memory

@@ -6,7 +6,6 @@
 #include <memory>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -129,19 +128,13 @@ VoxelAverages restored(const SurfaceGrid& surfaces, size_t i) {
           restored(surfaces.emission.empty() ? glm::vec3(0.0f) : surfaces.emission[i], count)};
 }
 
-bool earlier(const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
-
 void allocate(SurfaceGrid& surfaces, size_t count, VoxelAverage average, bool dynamic, bool emits) {
-  surfaces.voxels.resize(count);
+  surfaces.resize(count, emits);
   if (average == VoxelAverage::area)
     surfaces.area.resize(count);
   else
     surfaces.fragments.resize(count);
   if (dynamic) surfaces.dynamic.resize(count);
-  surfaces.albedo.resize(count);
-  surfaces.normal.resize(count);
-  surfaces.centroid.resize(count);
-  if (emits) surfaces.emission.resize(count);
 }
 
 void store(SurfaceGrid& surfaces, size_t i, const VoxelAverages& averages) {
@@ -166,7 +159,7 @@ class Layer {
   Layer(const SurfaceGrid& before, size_t k, std::span<const LayerFragment> fragments)
       : before_(before), fragments_(fragments), first_slice_(int(k) * slices_per_layer), cells_(cell_count()) {
     const auto slice = [&](int z) {
-      return std::lower_bound(before.voxels.begin(), before.voxels.end(), glm::ivec3(0, 0, z), earlier) -
+      return std::lower_bound(before.voxels.begin(), before.voxels.end(), glm::ivec3(0, 0, z), voxref::before) -
              before.voxels.begin();
     };
     old_begin_ = size_t(slice(first_slice_)), old_end_ = size_t(slice(first_slice_ + slices_per_layer));

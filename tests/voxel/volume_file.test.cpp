@@ -38,7 +38,7 @@ struct Example {
     writer.write_surfaces(surfaces);
     writer.write_radiance(surfaces, radiance, false);
     writer.write_levels(pyramid, false);
-    writer.write_base(pyramid.base, true);
+    writer.write_radiance(surfaces, radiance, true);
     writer.write_levels(pyramid, true);
     writer.finish();
   }
@@ -248,12 +248,12 @@ TEST_CASE("volumes that are missing, cut short or of another shape are refused b
 
 TEST_CASE("an opacity outside 0 to 1 is refused with its voxel", "[volume_file]") {
   const TemporaryFolder temporary;
-  BrickVolume<glm::vec4> base(glm::ivec3(4));
-  const std::vector<glm::ivec3> bricks = {{0, 0, 0}};
-  base.allocate(bricks);
-  base({1, 2, 3}) = {0, 0, 0, 1.5f};
-  VolumeFolderWriter writer(temporary.path, unit_grid(glm::ivec3(4)));
-  writer.write_base(base, false);
+  SurfaceGrid surfaces;
+  surfaces.grid = unit_grid(glm::ivec3(4));
+  surfaces.voxels = {{1, 2, 3}};
+  surfaces.albedo = {{0.0f, 0.0f, 0.0f, 1.5f}};
+  VolumeFolderWriter writer(temporary.path, surfaces.grid);
+  writer.write_radiance(surfaces, std::vector(1, glm::vec3(0.0f)), false);
   writer.finish();
   CHECK(contains(message_of([&] { VolumeFolder(temporary.path).base(false); }), "radiance.npy: [3,2,1]: opacity"));
 }

@@ -74,7 +74,7 @@ size_t cones_of(const GBufferPoint& point, const Scene& scene, const Settings& s
 double cones_of_image(const Scene& scene, const Caster& caster, const View& view, const Settings& settings) {
   const GBuffer gbuffer(scene, caster, view, settings.render.gbuffer);
   const size_t diffuse = pixel_cones(settings.render.cone.diffuse).cones.size();
-  const int side = view.pixel == PixelSampling::center ? 1 : 4;  // as render_cones
+  const int side = positions_per_side(view.pixel);
   std::vector<size_t> rows(size_t(view.height));
   parallel_for(rows.size(), 1, [&](size_t y, size_t) {
     for (int i = 0; i < view.width * side * side; ++i) {
