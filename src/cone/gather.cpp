@@ -24,7 +24,7 @@ Apex apex_over(const BasicMedium<Texel>& medium, const GatherPoint& point, const
 }  // namespace
 
 float openness(float occlusion, const AoOptions& options) {
-  if (!options.enabled) return 1.0f;
+  if (!options.enabled || options.alpha >= 1.0f) return 1.0f;  // all of it is given back, however much it sums to
   const float total = options.normalized ? std::numbers::pi_v<float> : 1.0f;
   return std::clamp(1.0f - occlusion / total + options.alpha, 0.0f, 1.0f);
 }

@@ -76,6 +76,7 @@ std::optional<GBufferPoint> GBuffer::operator()(const glm::vec2& position) const
   point.emission = surface.emission;
   point.reflectance = surface.reflectance;
   point.phong = phong_material(scene_, hit.triangle, hit.uv, options_.decode_textures);
+  point.phong.glossiness = std::max(point.phong.glossiness, 0.01f);  // spec section 7
   if (!options_.decode_textures && surface.emission != glm::vec3(0.0f)) point.emission = point.phong.emission;
 
   if (stored_depth) {

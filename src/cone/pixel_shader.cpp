@@ -65,7 +65,10 @@ Lobes lobes(const GBufferPoint& point, const PixelOptions& options) {
 }  // namespace
 
 PixelShader::PixelShader(const LitScene& lit, const RenderOptions& options, const glm::vec3& background)
-    : lit_(lit), options_(options), gatherer_(lit.volume, gather_options(lit, options, background)) {}
+    : lit_(lit),
+      lights_(by_type(lit.scene.lights)),
+      options_(options),
+      gatherer_(lit.volume, gather_options(lit, options, background)) {}
 
 PixelLight PixelShader::operator()(const GBufferPoint& point) const {
   PixelLight light;
@@ -91,7 +94,7 @@ GatherPoint PixelShader::gather_point(const GBufferPoint& point) const {
 glm::vec3 PixelShader::direct(const GBufferPoint& point, const GatherPoint& from) const {
   glm::vec3 sum(0.0f);
   const bool phong = options_.pixel.brdf == PixelBrdf::blinn_phong;
-  for (const Light& light : lit_.scene.lights) {
+  for (const Light& light : lights_) {
     const Illumination lit = illuminate(light, point.position, lit_.light);
     const float cosine = glm::dot(point.normal, lit.to_light);
     if (lit.irradiance == glm::vec3(0.0f) || cosine <= 0.0f || glm::dot(point.geometric_normal, lit.to_light) <= 0.0f)

@@ -81,6 +81,7 @@ class PixelShader {
   GatherPoint gather_point(const GBufferPoint& point) const;
 
   LitScene lit_;
+  std::vector<Light> lights_;
   RenderOptions options_;
   Gatherer gatherer_;
 };

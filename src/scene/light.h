@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 namespace voxref {
 
@@ -39,7 +40,10 @@ struct Illumination {
 /// Point: I/d^2. Spot: the same times glTF's angular attenuation, clamp((cos - cos_outer)/(cos_inner - cos_outer), 0,
 /// 1) squared, the denominator at least 0.001. Directional: E. A point on the light itself gets zero.
 /// With the attenuated falloff the intensity counts as the irradiance at distance 0, and a spot's ramp is smoothstep's:
-/// t^2 (3 - 2 t) (spec section 3, villegas2016).
+/// t^2 (3 - 2 t), whatever the denominator (spec section 3, villegas2016).
 Illumination illuminate(const Light& light, const glm::vec3& point, const LightOptions& options = {});
+
+/// Directional lights, then points, then spots: the order in which the published shaders sum them.
+std::vector<Light> by_type(std::vector<Light> lights);
 
 }  // namespace voxref

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "scene/light.h"
 
@@ -29,7 +30,9 @@ inline Illumination illuminate_near(const Light& light, bool spot, const glm::ve
   const glm::vec3 to_light(inverse * offset.x, inverse * offset.y, inverse * offset.z);
   float attenuation = there * falloff(distance, options);
   if (spot) {
-    constexpr float least_range = 0.001f;  // KHR_lights_punctual: keeps equal cone angles from dividing by zero
+    // KHR_lights_punctual keeps equal cone angles from dividing by zero; the published ramp knows no such floor.
+    const float least_range =
+        options.falloff == LightFalloff::inverse_square ? 0.001f : std::numeric_limits<float>::min();
     const float range = std::max(light.cos_inner - light.cos_outer, least_range);
     const float ramp = (-glm::dot(light.direction, to_light) - light.cos_outer) / range;
     const float t = std::min(std::max(ramp, 0.0f), 1.0f);

@@ -23,7 +23,7 @@ PhongMaterial phong_material(const Scene& scene, uint32_t triangle, const glm::v
   const glm::vec4 metal_rough = texture(m.metallic_roughness_texture);
   PhongMaterial phong;
   phong.diffuse = diffuse_share(m, metal_rough.b) * base;
-  phong.emission = m.emission * glm::vec3(color(m.emission_texture));
+  phong.emission = m.emission * glm::vec3(color(decode_textures ? m.emission_texture : m.base_color_texture));
   const glm::vec4 specular_color = color(m.specular_color_texture);
   if (m.workflow == Workflow::specular_glossiness) {
     phong.specular = m.specular_color * glm::vec3(specular_color);

@@ -21,7 +21,8 @@ float diffuse_share(const Material& material, float metallic_texel);
 
 /// KHR_materials_pbrSpecularGlossiness holds Kd, Ks and s as they are. Metallic-roughness is converted as that
 /// extension says: Kd = base (1 - metallic), Ks = mix(0.04 x specular colour, base, metallic), s = 1 - roughness.
-/// @param decode_textures false: colour textures are taken as the file holds them, sRGB-encoded
+/// @param decode_textures false: colour textures are taken as the file holds them, sRGB-encoded, and emission takes the
+/// base colour's texel, as where the published program binds that texture for both
 PhongMaterial phong_material(const Scene& scene, uint32_t triangle, const glm::vec2& uv, bool decode_textures);
 
 }  // namespace voxref

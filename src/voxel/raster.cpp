@@ -101,13 +101,13 @@ std::optional<DilatedTriangle> DilatedTriangle::make(const RasterTriangle& trian
   std::array<std::array<float, attributes>, 3> value;
   std::array<float, 3> depth;
   const glm::vec3 minimum = views.grid().min;
-  const float side = views.grid().voxel * float(size);
+  const float scale = 1.0f / (views.grid().voxel * float(size));  // a product: a quotient may round a wall away
   for (size_t i = 0; i < 3; ++i) {
     const glm::vec2 xy = intersection(lines[i], lines[(i + 1) % 3]);
     depth[i] = -(xy.x * normal.x + xy.y * normal.y + plane) / normal.z;
     window[i] = (xy * 0.5f + 0.5f) * float(size) - 0.5f;
     const glm::vec4 world = views.unproject(axis) * glm::vec4(xy, depth[i], 1.0f);
-    const glm::vec3 voxel = (glm::vec3(world) / world.w - minimum) / side * float(size);
+    const glm::vec3 voxel = (glm::vec3(world) / world.w - minimum) * scale * float(size);
     value[i] = {voxel.x, voxel.y, voxel.z, triangle.normals[i].x, triangle.normals[i].y, triangle.normals[i].z,
                 uv[i].x, uv[i].y};
   }

@@ -57,7 +57,7 @@ class Shader {
  public:
   Shader(const Scene& scene, const Caster* caster, const SurfaceGrid& surfaces, const LightOptions& light,
          const ShadeOptions& options)
-      : scene_(scene), caster_(caster), surfaces_(surfaces), light_options_(light), options_(options) {
+      : lights_(by_type(scene.lights)), caster_(caster), surfaces_(surfaces), light_options_(light), options_(options) {
     assert(caster || options.shadow != VoxelShadow::rays);
     if (options.shadow != VoxelShadow::volume) return;
     if (options.shadow_hit)
@@ -72,7 +72,7 @@ class Shader {
     glm::vec3 reflected(0.0f);
     float visible = 0.0f;
     if (glm::vec3(albedo) != glm::vec3(0.0f)) {
-      for (const Light& light : scene_.lights) {
+      for (const Light& light : lights_) {
         const glm::vec3 position = shaded_point(voxel);
         const Illumination arriving = illuminate(light, position, light_options_);
         if (arriving.attenuation == 0.0f) continue;
@@ -87,7 +87,7 @@ class Shader {
     if (options_.normalization == ShadeNormalization::lambert) reflected *= std::numbers::inv_pi_v<float>;
     const glm::vec3 emission = surfaces_.emission.empty() ? glm::vec3(0.0f) : surfaces_.emission[voxel];
     shading.radiance[voxel] = emission + reflected;
-    const float lights = float(std::max<size_t>(scene_.lights.size(), 1));
+    const float lights = float(std::max<size_t>(lights_.size(), 1));
     shading.visibility[voxel] = std::clamp(visible / lights, 0.0f, 1.0f);
   }
 
@@ -149,7 +149,7 @@ class Shader {
     return std::max(0.0f, shadow_volume_->visibility(from, glm::normalize(offset), distance, hit));
   }
 
-  const Scene& scene_;
+  std::vector<Light> lights_;  // in the published order of sums
   const Caster* caster_;
   const SurfaceGrid& surfaces_;
   LightOptions light_options_;

@@ -141,6 +141,12 @@ TEST_CASE("Openness is 1 in the open, 0 in a closed box without falloff, and bet
   const Medium box = lit_box({32, 32, 32});
   ao.falloff = 0.0f;
   CHECK(gather_diffuse(box, cones, floor, {}, ao, glm::vec3(0.0f)).openness < 0.02f);
+  CHECK(openness(3.0f, ao) == 1.0f - 3.0f / std::numbers::pi_v<float>);
+  ao.alpha = 1.0f;
+  ao.normalized = false;
+  CHECK(openness(3.0f, ao) == 1.0f);  // as the published shaders, which then gather no occlusion
+  ao = {};
+  ao.enabled = true;
   ao.falloff = 1.0f;
   const float near = gather_diffuse(box, cones, floor, {}, ao, glm::vec3(0.0f)).openness;
   ao.falloff = 10.0f;

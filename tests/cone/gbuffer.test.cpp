@@ -94,6 +94,19 @@ TEST_CASE("Colours in bytes round to the nearest and clamp to 1", "[gbuffer]") {
   CHECK(point->reflectance.diffuse == point->phong.diffuse);
 }
 
+TEST_CASE("Glossiness is 0.01 at least", "[gbuffer]") {
+  Material rough = lambert(glm::vec3(0.5f));
+  rough.workflow = Workflow::specular_glossiness;
+  GBufferOptions options;
+  rough.glossiness = 0.0f;
+  CHECK(seen(two_floors(rough), options, above)->phong.glossiness == 0.01f);
+  options.color = ColorFormat::unorm8;
+  CHECK(seen(two_floors(rough), options, above)->phong.glossiness == Approx(3.0f / 255.0f));  // 2.55
+  rough.glossiness = 0.5f;
+  options.color = ColorFormat::float32;
+  CHECK(seen(two_floors(rough), options, above)->phong.glossiness == 0.5f);
+}
+
 TEST_CASE("A depth of 24 bits moves the position by less than a step, and cuts off at the planes", "[gbuffer]") {
   const Scene scene = two_floors(lambert(glm::vec3(0.5f)));
   GBufferOptions options;
@@ -134,8 +147,11 @@ TEST_CASE("Textures are decoded, or taken as the file holds them", "[gbuffer]") 
   scene.uv[0].assign(scene.positions.size(), glm::vec2(0.5f));
   scene.materials[0].base_color_texture.image = 0;
   scene.materials[0].base_color_texture.srgb = true;
+  scene.materials[0].emission = glm::vec3(1.0f);
   GBufferOptions options;
+  CHECK(seen(scene, options, above)->emission.g == 1.0f);
   CHECK(seen(scene, options, above)->phong.diffuse.g == Approx(0.21586f).epsilon(1e-4));  // IEC 61966-2-1
   options.decode_textures = false;
   CHECK(seen(scene, options, above)->phong.diffuse.g == Approx(128.0f / 255.0f).epsilon(1e-6));
+  CHECK(seen(scene, options, above)->emission.g == Approx(128.0f / 255.0f).epsilon(1e-6));  // the base colour's texel
 }

@@ -78,6 +78,17 @@ TEST_CASE("Falloff is 1 / (1 + c + l d + q d^2) and has no effect on directional
   CHECK(red(lit_by(sun("sun", {0, -1, 0}, glm::vec3(1.0f))), surfaces, without_shadow(), light) == 1.0f);
 }
 
+TEST_CASE("Directional lights are summed before point lights, wherever the file has them", "[shade]") {
+  Scene scene = lit_by(point_light("faint", {4.0f, 7.5f, 6.0f}, glm::vec3(5e-8f)));
+  scene.lights.push_back(scene.lights[0]);
+  Light sun;
+  sun.type = LightType::directional;
+  sun.direction = {0, -1, 0};
+  scene.lights.push_back(sun);
+  // 1 + 5e-8 is 1 in float32, and once more; 1e-7 + 1 is not.
+  CHECK(red(scene, voxel({4, 3, 6}, {0, 1, 0}), without_shadow()) == 1.0f);
+}
+
 TEST_CASE("A spot light fades by smoothstep between its cones", "[shade]") {
   Light spot = point_light("spot", {4.0f, 7.5f, 6.0f}, glm::vec3(1.0f));
   spot.type = LightType::spot;

@@ -125,6 +125,14 @@ TEST_CASE("Normals that cancel leave a voxel without one, in either average", "[
   for (const glm::vec3& normal : bytes.normal) CHECK(normal == glm::vec3(2.0f * (127 * byte) - 1.0f));
 }
 
+TEST_CASE("Positions are multiplied by 1 / G: a wall on the grid's far side may stay inside", "[voxelize_raster]") {
+  // 41 x (1 / 41 in float32) is below 1, 41 / 41 would be outside.
+  Grid far = grid;
+  far.voxel = 41.0f / 16.0f;
+  const SurfaceGrid surfaces = voxelize(scene_of(wall(41.0f, 8.0f, 33.0f)), far, raster);
+  CHECK(find(surfaces, {8, 8, 15}) < surfaces.size());
+}
+
 TEST_CASE("Alpha multiplies the colour and makes no hole unless it is 0", "[voxelize_raster]") {
   Scene scene = scene_of(wall(5.5f, 2.25f, 9.75f), lambertian("paint", glm::vec3(1.0f)));
   add_texture(scene, {255, 255, 255, 51}, false);
