@@ -126,10 +126,10 @@ TEST_CASE("Normals that cancel leave a voxel without one, in either average", "[
 }
 
 TEST_CASE("Positions are multiplied by 1 / G: a wall on the grid's far side may stay inside", "[voxelize_raster]") {
-  // 41 x (1 / 41 in float32) is below 1, 41 / 41 would be outside.
+  // 47 x (1 / 47 in float32) is below 1; 47 / 47 would be outside.
   Grid far = grid;
-  far.voxel = 41.0f / 16.0f;
-  const SurfaceGrid surfaces = voxelize(scene_of(wall(41.0f, 8.0f, 33.0f)), far, raster);
+  far.voxel = 47.0f / 16.0f;
+  const SurfaceGrid surfaces = voxelize(scene_of(wall(47.0f, 8.0f, 39.0f)), far, raster);
   CHECK(find(surfaces, {8, 8, 15}) < surfaces.size());
 }
 
