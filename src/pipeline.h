@@ -29,7 +29,7 @@ struct NonfiniteVoxels {
 };
 
 /// Of the cone tracer's image: 23 float32 channels.
-constexpr size_t cone_image_bytes_per_pixel = 4 * 23;
+constexpr size_t cone_image_bytes_per_pixel = 23 * sizeof(float);
 
 struct ConeTraceResult {
   ConeImage image;

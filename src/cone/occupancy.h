@@ -80,7 +80,7 @@ class Occupancy {
     const Int8 slice = cell[2] & 7, in_slice = (cell[0] & 7) + 8 * (cell[1] & 7);
     uint32_t found = 0;
     for (int i = 0; i < 8; ++i) {
-      const Block& bits = blocks_[slots_[size_t(first_[size_t(level[i])] + block[i])]];
+      const Block& bits = blocks_[slots_[size_t(first_[size_t(level[i])]) + size_t(block[i])]];
       found |= uint32_t(bits[size_t(slice[i])] >> in_slice[i] & 1u) << i;
     }
     return found;
@@ -105,7 +105,7 @@ class Occupancy {
   static Int4 block_grid(const Int4& last) { return ((last + 1) >> 3) + 1; }
   bool bit(int level, const glm::ivec3& cell, const glm::ivec3& grid) const {
     const int block = cell.x / 8 + grid.x * (cell.y / 8 + grid.y * (cell.z / 8));
-    const Block& bits = blocks_[slots_[size_t(first_[size_t(level)] + block)]];
+    const Block& bits = blocks_[slots_[size_t(first_[size_t(level)]) + size_t(block)]];
     return bits[size_t(cell.z & 7)] >> ((cell.x & 7) + 8 * (cell.y & 7)) & 1u;
   }
   /// Without levels. @param size texels of the base

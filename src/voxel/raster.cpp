@@ -123,8 +123,9 @@ std::optional<DilatedTriangle> DilatedTriangle::make(const RasterTriangle& trian
   result.depth_ = linear(depth[0], depth[1], depth[2]);
   for (size_t k = 0; k < attributes; ++k) result.values_[k] = linear(value[0][k], value[1][k], value[2][k]);
   if (colors) {
-    result.color_.emplace();
-    for (int k = 0; k < 4; ++k) (*result.color_)[size_t(k)] = linear((*colors)[0][k], (*colors)[1][k], (*colors)[2][k]);
+    std::array<Linear, 4> channels;
+    for (int k = 0; k < 4; ++k) channels[size_t(k)] = linear((*colors)[0][k], (*colors)[1][k], (*colors)[2][k]);
+    result.color_ = channels;
   }
   return result;
 }

@@ -238,7 +238,7 @@ Section pareto_section(const StudyScene& scene, const ParetoGrid& grid, const Pr
 }
 
 StudyResult run_pareto(const StudyRequest& request) {
-  // Steps of a quarter would take as long as all of this, and change no error by a hundredth of it.
+  // Steps of a quarter would take as long as all of this, and change the error by a hundredth of it (README: step alone).
   ParetoGrid grid{{{32, 64, 128, 256},
                    {0, 1, 2, std::nullopt},
                    {Storage::unorm8, Storage::float32},
