@@ -33,7 +33,7 @@ glm::vec3 mean_color(const Image& image) {
 }
 
 /// Gives back what a stage freed: of pages that held many small blocks glibc's heap keeps all but the last ones, which
-/// is a tenth of the peak at 512 voxels.
+/// is a twentieth of Sponza's peak at 512 voxels.
 void give_back_freed_memory() { malloc_trim(0); }
 
 /// What cones march through. @param depth_bytes those that the bounces held
