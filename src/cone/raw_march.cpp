@@ -34,7 +34,7 @@ ConeSteps::ConeSteps(std::vector<ConeStep> steps, float voxel) : steps_(std::mov
     const ConeStep& step = steps_[std::min(i, size() - 1)];
     distances_.push_back(step.distance);
     coarsest_.push_back(step.coarsest());
-    coarser_shares_.push_back(step.fraction > 0.0f ? step.fraction : 1.0f);
+    coarser_shares_.push_back(step.coarser_share());
   }
   if (!narrow()) return;
   for (size_t begin = 0; begin < size(); begin += lanes) add_group(begin, std::min(begin + lanes, size()), voxel);

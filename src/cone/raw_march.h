@@ -16,6 +16,8 @@ struct ConeStep {
   float fraction = 0.0f;  ///< share of the coarser one, in [0,1)
   /// Coarsest level that is read.
   int coarsest() const { return level + (fraction > 0.0f); }
+  /// What it counts beside the level below.
+  float coarser_share() const { return fraction > 0.0f ? fraction : 1.0f; }
   float occlusion = 1.0f;  ///< what opacity here counts towards ambient occlusion, in (0,1]
 };
 
@@ -38,8 +40,8 @@ class ConeSteps {
   static constexpr size_t lanes = 8;
   struct Lanes {
     Float8 distance;
-    Int8 coarsest;         ///< ConeStep::coarsest()
-    Float8 coarser_share;  ///< what it counts beside the level below
+    Int8 coarsest;
+    Float8 coarser_share;
   };
 
   ConeSteps() = default;

@@ -60,7 +60,7 @@ class RawLookups {
       const size_t lane = steps_.size() % lanes;
       group.x[lane] = place.x, group.y[lane] = place.y, group.z[lane] = place.z;
       group.coarsest[lane] = step.coarsest();
-      group.coarser_share[lane] = step.fraction > 0.0f ? step.fraction : 1.0f;
+      group.coarser_share[lane] = step.coarser_share();
       steps_.push_back(step);
     }
   }
