@@ -57,6 +57,16 @@ TEST_CASE("A logarithmic axis holds its error bars, but for those that come near
   CHECK(contains(script, fmt::format("set yrange [{}:", 0.1 * 3.0 / 1.4)));
 }
 
+TEST_CASE("A mark is a labelled upright line, and is left out where it has no place on the axis", "[study]") {
+  Chart chart = two_points();
+  chart.marks = {{2.5, "breaks \"here\""}, {std::nan(""), "nowhere"}, {-1.0, "left of a logarithm"}};
+  const std::string script = gnuplot_script(chart, "svg", "two.svg");
+  CHECK(contains(script, "set arrow from first 2.5, graph 0 to first 2.5, graph 1 nohead"));
+  CHECK(contains(script, "set label \"breaks \\\"here\\\"\" at first 2.5"));
+  CHECK(!contains(script, "nowhere"));
+  CHECK(!contains(script, "left of a logarithm"));
+}
+
 TEST_CASE("Theory has the colour of its measurement, and a place in the legend", "[study]") {
   Chart chart = two_points();
   chart.series.push_back({"theory", ChartStyle::dashes, {{1.0, 9.0}, {10.0, 4.0}}, "measured"});
@@ -76,9 +86,11 @@ TEST_CASE("What gnuplot refuses is said, and a folder's name may hold an apostro
   const TemporaryFolder folder;
   CHECK_THROWS_AS(draw(two_points(), "/bin/false", folder.path), Error);
   CHECK_THROWS_AS(draw(two_points(), folder.path / "absent", folder.path), Error);
+  CHECK_THROWS_AS(require_drawing("/bin/false"), Error);
   const auto gnuplot = find_gnuplot();
   if (!gnuplot) VOXREF_SKIP("gnuplot is not installed");
   std::filesystem::create_directory(folder.path / "it's");
+  CHECK_NOTHROW(require_drawing(*gnuplot));
   draw(two_points(), *gnuplot, folder.path / "it's");
   CHECK(read_file(folder.path / "it's" / "two.png").substr(1, 3) == "PNG");
 }

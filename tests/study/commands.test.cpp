@@ -24,10 +24,10 @@ TEST_CASE("voxref study writes tables, a page and how each was made", "[study][c
   const Workplace place;
   // A plane alone: the quickest scene, which has direct light only.
   voxref::write_glb(place.path("plane.glb"), voxref::point_light_over_plane(), "for the tests");
-  const json result = place.run_json("study ladder plane.glb -o out --quick");
+  const json result = place.run_json("study ladder plane.glb -o out --quick --threads 2");
   const json& study = result["studies"][0];
   CHECK(study["name"] == "ladder");
-  CHECK(study["command"] == "voxref study ladder plane.glb -o out --quick");
+  CHECK(study["command"] == "voxref study ladder plane.glb -o out --quick --threads 2");
   REQUIRE(study["sections"].size() == 1);
   for (const json& table : study["sections"][0]["tables"]) {
     const std::string name = table["name"];
@@ -37,7 +37,18 @@ TEST_CASE("voxref study writes tables, a page and how each was made", "[study][c
     CHECK(file["rows"] == table["rows"]);
   }
   CHECK(json::parse(voxref::read_file(place.path("out/result.json"))) == result);
-  CHECK(contains(voxref::read_file(place.path("out/report.html")), "voxref study ladder plane.glb -o out --quick"));
+  CHECK(contains(voxref::read_file(place.path("out/report.html")),
+                 "voxref study ladder plane.glb -o out --quick --threads 2"));
+}
+
+TEST_CASE("A gnuplot that does not work is refused before the work", "[study][cli]") {
+  const Workplace place;
+  const Outcome outcome = place.shell(
+      "mkdir bin && printf '#!/bin/sh\\necho no fonts >&2\\nexit 1\\n' > bin/gnuplot && chmod +x bin/gnuplot && "
+      "PATH=\"$PWD/bin:$PATH\" voxref study stability -o out");
+  CHECK(outcome.status == 2);
+  CHECK(contains(outcome.err, "gnuplot: trial: no fonts"));
+  CHECK(!fs::exists(place.path("out")));
 }
 
 TEST_CASE("voxref plan writes settings that cone takes, and says what it measured", "[plan][cli]") {

@@ -1,6 +1,8 @@
 #include "study/pareto.h"
 
 #include <cmath>
+#include <mutex>
+#include <set>
 
 #include "catch.h"
 #include "make_scenes/builders.h"
@@ -34,6 +36,25 @@ TEST_CASE("A small pareto study has a row per setting, a frontier and error bars
     }
   // Without bounces the box misses more than a tenth of its light, whatever the cones.
   for (size_t i = 0; i < 4; ++i) CHECK(section.tables[0].number(i, "rel_error_low") > 0.1);
+}
+
+TEST_CASE("What takes long is timed in one round, and progress says which setting it is at", "[study]") {
+  ParetoGrid grid{{{16, 24}, {0}, {Storage::float32}, {1.0f}, {4}}, 12, 64, 1, 2, 3};
+  const auto rounds = [&](double long_enough, const Progress& progress) {
+    grid.long_enough = long_enough;
+    const Table cones = pareto_section(cornell_point_scene(), grid, progress).tables[0];
+    return std::vector{cones.number(0, "rounds"), cones.number(1, "rounds")};
+  };
+  std::mutex mutex;  // threads report on their own
+  std::set<std::string> settings;
+  Progress progress;
+  progress.report = [&](std::string_view stage, double) {
+    const std::lock_guard lock(mutex);
+    if (const size_t comma = stage.find(','); comma != stage.npos) settings.insert(std::string(stage.substr(0, comma)));
+  };
+  CHECK(rounds(0.0, progress) == std::vector{1.0, 1.0});  // nothing takes less than no time
+  CHECK(settings == std::set<std::string>{"setting 1 of 2", "setting 2 of 2"});
+  CHECK(rounds(1e9, {}) == std::vector{3.0, 3.0});
 }
 
 TEST_CASE("Error bars of few seeds are those of Student's distribution", "[study]") {

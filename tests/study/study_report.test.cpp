@@ -33,8 +33,10 @@ StudyResult small_study() {
 void write(const TemporaryFolder& folder, const StudyResult& result,
            const std::optional<std::filesystem::path>& gnuplot) {
   const nlohmann::json origin = {{"command_line", "voxref study all"}};
-  write_study(folder.path, result, origin, gnuplot);
-  write_report(folder.path, std::vector{result}, origin, gnuplot.has_value());
+  write_tables(folder.path, result, origin);
+  write_result(folder.path, std::vector{result}, origin);
+  if (gnuplot) draw_charts(folder.path, result, *gnuplot);
+  write_page(folder.path, std::vector{result}, origin, gnuplot.has_value());
 }
 
 }  // namespace

@@ -26,12 +26,9 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-bool drawable(const ChartPoint& point, const Chart& chart) {
-  const auto fits = [](double value, const Axis& axis) {
-    return std::isfinite(value) && (!axis.logarithmic || value > 0.0);
-  };
-  return fits(point.x, chart.x) && fits(point.y, chart.y);
-}
+bool fits(double value, const Axis& axis) { return std::isfinite(value) && (!axis.logarithmic || value > 0.0); }
+
+bool drawable(const ChartPoint& point, const Chart& chart) { return fits(point.x, chart.x) && fits(point.y, chart.y); }
 
 std::string range(const Axis& axis) {
   const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "*"; };
@@ -209,6 +206,19 @@ std::string notes(const Chart& chart) {
   return text;
 }
 
+/// Their labels stand upright to the left of the lines, below the upper end.
+std::string marks(const Chart& chart) {
+  std::string text;
+  for (const Mark& mark : chart.marks)
+    if (fits(mark.x, chart.x))
+      text += fmt::format(
+          "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead dt 4 lw 1.2 lc rgb '#555555'\n"
+          "set label {1} at first {0}, graph 0.98 right rotate by 90 offset -0.6,0 font ',9' tc rgb '#555555' "
+          "noenhanced front\n",
+          mark.x, quoted(mark.label));
+  return text;
+}
+
 }  // namespace
 
 bool is_empty(const Chart& chart) {
@@ -237,7 +247,7 @@ std::string gnuplot_script(const Chart& chart, const std::string& terminal, cons
   text += listed > 0
               ? fmt::format("set key outside below maxrows {}\nset bmargin {}\n", rows, 5 + rows + categories.lines)
               : "set key off\n";
-  text += notes(chart);
+  text += notes(chart) + marks(chart);
   const auto x = [](const auto& point_or_bars) { return point_or_bars.x; };
   const auto y = [](const auto& point_or_bars) { return point_or_bars.y; };
   text += axis_lines(fitted(chart.x, chart, x, x), 'x') + axis_lines(fitted(chart.y, chart, y, y), 'y');

@@ -29,7 +29,7 @@ struct ChartPoint {
 enum class ChartStyle : uint8_t {
   points,
   line,
-  dashes,  ///< a line that nobody measured: theory, a threshold; grey, unless it has the colour of another series
+  dashes,  ///< a line that nobody measured: theory, a limit; grey, unless it has the colour of another series
   line_points,
   bars  ///< from `base` to y
 };
@@ -41,6 +41,12 @@ struct Series {
   std::string color_of{};  ///< title of the series whose colour this one shares: theory beside its measurement
 };
 
+/// A dashed vertical line: where something begins or ends.
+struct Mark {
+  double x = 0;       ///< not finite, or not above 0 where the axis is logarithmic: none is drawn
+  std::string label;  ///< along the line
+};
+
 /// A chart as data. Colours are told apart by colour-blind readers (Okabe and Ito 2008), and each series has its own
 /// point symbol.
 struct Chart {
@@ -48,6 +54,7 @@ struct Chart {
   std::string title;
   Axis x, y;
   std::vector<Series> series{};
+  std::vector<Mark> marks{};         ///< within the range of the points
   std::vector<std::string> notes{};  ///< lines to the right of the plot: what short labels mean
   std::string footer{};              ///< above, small: the command that made it, and its time
 };

@@ -59,6 +59,13 @@ std::optional<fs::path> find_gnuplot() {
   return std::nullopt;
 }
 
+void require_drawing(const fs::path& gnuplot) {
+  const ScratchFolder folder;
+  Chart chart{"trial", "trial", {"x"}, {"y"}};
+  chart.series.push_back({"a point", ChartStyle::points, {{1.0, 1.0}}});
+  draw(chart, gnuplot, folder.path());
+}
+
 void draw(const Chart& chart, const fs::path& gnuplot, const fs::path& folder) {
   const fs::path file = folder / chart.name;
   write_text(file.string() + ".gnuplot", gnuplot_script(chart, "svg", chart.name + ".svg"));

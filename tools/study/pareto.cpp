@@ -8,6 +8,8 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <string_view>
 
 #include "compare/statistics.h"
 #include "reference/path.h"
@@ -59,16 +61,24 @@ std::vector<Cell> measured_cells(const Spread& time, double error, const Interva
 void append(std::vector<Cell>& row, const std::vector<Cell>& more) { row.insert(row.end(), more.begin(), more.end()); }
 
 /// The seconds that each setting took, per round; one round after another, so that a busy spell does not hit a setting
-/// in all of them. @param first is told every result of the first round
+/// in all of them; busy spells matter little to what takes long. @param first is told every result of the first round
 template <class First>
 std::vector<std::vector<double>> time_settings(const Setup& setup, const ParetoGrid& grid, const Progress& progress,
                                                const First& first) {
   const std::vector<SettingPoint> points = all_points(grid.space);
   std::vector<std::vector<double>> seconds(points.size());
+  size_t begun = 0;
+  Progress stages = progress;
+  if (progress.report)
+    stages.report = [&](std::string_view stage, double fraction) {
+      progress(fmt::format("setting {} of {}, {}", begun, points.size(), stage), fraction);
+    };
   for (int round = 0; round < grid.rounds; ++round) {
-    ConeRunner runner(setup.scene.scene, setup.caster, setup.view, progress);
+    ConeRunner runner(setup.scene.scene, setup.caster, setup.view, stages);
     for (size_t i = 0; i < points.size(); ++i) {
+      begun = i + 1;
       progress.check();
+      if (round > 0 && seconds[i][0] > grid.long_enough) continue;
       const Settings settings = at(grid.space, points[i], {});
       const ConeTraceResult result = runner(settings);
       seconds[i].push_back(result.seconds.total);
@@ -80,11 +90,10 @@ std::vector<std::vector<double>> time_settings(const Setup& setup, const ParetoG
 
 Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& progress) {
   Table table{"pareto_" + setup.scene.name + "_cones",
-              fmt::format("Cone tracer: every setting with its error and the seconds of all its stages, {} rounds",
-                          grid.rounds),
+              fmt::format("Cone tracer: every setting with its error and the seconds of all its stages"),
               setting_columns()};
   for (const Column& column : measured_columns()) table.columns.push_back(column);
-  table.columns.insert(table.columns.end(), {{"rel_bias", ""}, {"memory", "MiB"}, {"frontier", ""}});
+  table.columns.insert(table.columns.end(), {{"rel_bias", ""}, {"memory", "MiB"}, {"rounds", ""}, {"frontier", ""}});
   struct Found {
     Settings settings;
     Deviation deviation;
@@ -101,7 +110,7 @@ Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
     std::vector<Cell> row = setting_cells(found[i].settings);
     append(row, measured_cells(spread(seconds[i]), d.rel_error(),
                                {d.square.root(-normal_limit), d.square.root(normal_limit)}));
-    append(row, {d.bias, std::ldexp(found[i].bytes, -20), std::string()});
+    append(row, {d.bias, std::ldexp(found[i].bytes, -20), double(seconds[i].size()), std::string()});
     table.add(std::move(row));
   }
   return table;
@@ -152,22 +161,31 @@ ChartPoint chart_point(const Table& table, size_t row, const std::string& label,
   return point;
 }
 
-/// What the letters at the frontier mean, and the frontier itself.
+/// a to z, then A to Z; empty after those.
+std::string letter(size_t index) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+  return std::string(letters.substr(std::min(index, letters.size()), 1));
+}
+
+/// What the letters at the frontier mean, and the frontier itself. Points that are too close to the one labelled before
+/// have none.
 Series frontier_series(const Table& cones, std::span<const size_t> frontier, std::vector<std::string>& notes) {
   Series series{"the cones' frontier", ChartStyle::line_points};
   notes.emplace_back("On the frontier:");
-  double labelled = 0.0;
+  std::optional<Tradeoff> labelled;
+  size_t letters = 0;
   for (const size_t i : frontier) {
-    constexpr double room = 1.15;  // in time, that a letter needs of its own
-    std::string letter;
-    if (cones.number(i, "time") > room * labelled) {
-      labelled = cones.number(i, "time");
-      letter = static_cast<char>('a' + static_cast<int>(notes.size() - 1) % 26);
+    constexpr double room = 1.15;  // that a letter needs of its own, in time or error
+    const Tradeoff here{cones.number(i, "time"), cones.number(i, "rel_error")};
+    std::string label;
+    if (!labelled || here.seconds > room * labelled->seconds || labelled->error > room * here.error) {
+      labelled = here;
+      label = letter(letters++);
       const auto word = [&](const char* column) { return display(cones.rows[i][cones.column(column)]); };
-      notes.push_back(fmt::format("{}  {} voxels, bounces {}, {}, step {}, {} cones", letter, word("voxels"),
+      notes.push_back(fmt::format("{}  {} voxels, bounces {}, {}, step {}, {} cones", label, word("voxels"),
                                   word("bounces"), word("storage"), word("step"), word("cones")));
     }
-    series.points.push_back(chart_point(cones, i, letter, true));
+    series.points.push_back(chart_point(cones, i, label, true));
   }
   return series;
 }
@@ -199,7 +217,8 @@ std::string findings(const Table& cones, const Table& paths, std::span<const siz
   std::string text = fmt::format(
       "Error: RMS difference of luminance over the mean of the path-traced light, with the noise of the truth removed "
       "and 95 % confidence limits. Time: of all stages, booked to every setting that uses them, for the path tracer of "
-      "its render loop; the median, and the least and the greatest measured on this machine.\n\n"
+      "its render loop; the median, and the least and the greatest measured on this machine, each setting once in a "
+      "round (column rounds). Frontier: no other setting is both as quick and as accurate.\n\n"
       "The most accurate of {} settings is {:.1f} % off in {:.3g} s.",
       cones.rows.size(), 100.0 * error, cones.number(best, "time"));
   for (size_t i = 0; i < paths.rows.size(); ++i)
@@ -238,7 +257,8 @@ Section pareto_section(const StudyScene& scene, const ParetoGrid& grid, const Pr
 }
 
 StudyResult run_pareto(const StudyRequest& request) {
-  // Steps of a quarter would take as long as all of this, and change the error by a hundredth of it (README: step alone).
+  // Steps of a quarter would take as long as all of this, and change the error by a hundredth of it (README: step
+  // alone).
   ParetoGrid grid{{{32, 64, 128, 256},
                    {0, 1, 2, std::nullopt},
                    {Storage::unorm8, Storage::float32},
@@ -248,7 +268,8 @@ StudyResult run_pareto(const StudyRequest& request) {
                   1024,
                   256,
                   4,
-                  3};
+                  3,
+                  2.0};
   if (request.quick)
     grid = {{{24, 48, 96}, {0, 1, std::nullopt}, {Storage::unorm8, Storage::float32}, {1.0f, 0.5f}, {4, 6, 16, 32}},
             64,
@@ -259,7 +280,7 @@ StudyResult run_pareto(const StudyRequest& request) {
   StudyResult result{"pareto", "speed against accuracy"};
   for (const StudyScene& scene :
        scenes_or_own(request, {cornell_point_scene(), light_box_scene()}, true, result.skipped))
-    result.sections.push_back(pareto_section(scene, grid, request.progress));
+    result.sections.push_back(pareto_section(scene, grid, inside(request.progress, scene.name)));
   return result;
 }
 

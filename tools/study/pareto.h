@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct ParetoGrid {
   int reference_spp = 256;
   int most_spp = 64;  ///< of the path tracer on the chart
   int seeds = 4;      ///< independent path-traced images per number of samples, at least 2
-  int rounds = 3;     ///< in which each setting's time is measured
+  int rounds = 3;     ///< in which a setting's time is measured
+  double long_enough = std::numeric_limits<double>::infinity();  ///< seconds; of settings that take more one round does
 };
 
 /// One chart and two tables for one scene. Times are medians over the rounds, with the least and the greatest; errors

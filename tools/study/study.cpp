@@ -2,8 +2,18 @@
 
 #include <array>
 #include <chrono>
+#include <string_view>
 
 namespace voxref {
+
+Progress inside(const Progress& whole, const std::string& part) {
+  Progress progress = whole;
+  if (whole.report)
+    progress.report = [report = whole.report, part](std::string_view stage, double fraction) {
+      report(part + ", " + std::string(stage), fraction);
+    };
+  return progress;
+}
 
 Section timed_section(const std::string& title, const std::function<void(Section&)>& make) {
   const auto start = std::chrono::steady_clock::now();

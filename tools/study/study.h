@@ -46,6 +46,9 @@ struct StudyRequest {
   Progress progress;
 };
 
+/// The progress of a part: what it reports says whose part it is, "part, stage".
+Progress inside(const Progress& whole, const std::string& part);
+
 /// Calls `make`, which fills a section, and notes the time.
 Section timed_section(const std::string& title, const std::function<void(Section&)>& make);
 

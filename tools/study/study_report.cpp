@@ -124,10 +124,9 @@ nlohmann::json study_result(std::span<const StudyResult> results, const nlohmann
   return {{"provenance", provenance}, {"studies", list}};
 }
 
-void write_study(const fs::path& folder, const StudyResult& result, const nlohmann::json& provenance,
-                 const std::optional<fs::path>& gnuplot) {
+void write_tables(const fs::path& folder, const StudyResult& result, const nlohmann::json& provenance) {
   fs::create_directories(folder);
-  for (const Section& section : result.sections) {
+  for (const Section& section : result.sections)
     for (const Table& table : section.tables) {
       write_text(folder / (table.name + ".csv"), csv(table, made_by(result, section)));
       nlohmann::json json = to_json(table);
@@ -136,17 +135,22 @@ void write_study(const fs::path& folder, const StudyResult& result, const nlohma
       json["seconds"] = section.seconds;
       write_text(folder / (table.name + ".json"), json.dump(1) + "\n");
     }
-    if (!gnuplot) continue;
-    for (Chart chart : section.charts) {
-      chart.footer = made_by(result, section);
-      if (!is_empty(chart)) draw(chart, *gnuplot, folder);
-    }
-  }
 }
 
-void write_report(const fs::path& folder, std::span<const StudyResult> results, const nlohmann::json& provenance,
-                  bool charts) {
+void draw_charts(const fs::path& folder, const StudyResult& result, const fs::path& gnuplot) {
+  for (const Section& section : result.sections)
+    for (Chart chart : section.charts) {
+      chart.footer = made_by(result, section);
+      if (!is_empty(chart)) draw(chart, gnuplot, folder);
+    }
+}
+
+void write_result(const fs::path& folder, std::span<const StudyResult> results, const nlohmann::json& provenance) {
   write_text(folder / "result.json", study_result(results, provenance).dump(1) + "\n");
+}
+
+void write_page(const fs::path& folder, std::span<const StudyResult> results, const nlohmann::json& provenance,
+                bool charts) {
   write_text(folder / "report.html", page(folder, results, provenance, charts));
 }
 

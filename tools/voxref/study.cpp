@@ -91,6 +91,7 @@ std::string command(const Options& options, const Study& study) {
   for (const std::string& scene : options.scenes) line += " " + shell_word(scene);
   line += " -o " + shell_word(options.output);
   if (options.quick) line += " --quick";
+  if (options.common.threads > 0) line += fmt::format(" --threads {}", options.common.threads);
   if (study.takes_gpu_image && !options.gpu_image.empty()) line += " --gpu " + shell_word(options.gpu_image);
   return line;
 }
@@ -118,23 +119,29 @@ int run_study(const Options& options) {
   request.quick = options.quick;
   request.assets = find_assets();
   request.gpu_image = options.gpu_image;
-  request.progress = terminal.progress();
   for (const std::string& file : options.scenes) request.scenes.push_back(load(file, terminal));
 
   const auto gnuplot = find_gnuplot();
-  if (!gnuplot) terminal.warn("voxref: warning: gnuplot is not installed (Debian: gnuplot-nox): data without charts");
+  if (gnuplot)
+    require_drawing(*gnuplot);
+  else
+    terminal.warn("voxref: warning: gnuplot is not installed (Debian: gnuplot-nox): data without charts");
   nlohmann::json origin = program_provenance();
   origin["machine"] = machine();
+  if (!request.assets.empty()) origin["assets"] = request.assets.string();
   std::vector<StudyResult> results;
   for (const Study& study : wanted) {
+    request.progress = inside(terminal.progress(), study.name);
     StudyResult& result = results.emplace_back(study.run(request));
     result.command = command(options, study);
     for (const std::string& skipped : result.skipped) terminal.warn("voxref: skipped: " + skipped);
     for (const Section& section : result.sections)
       terminal.say(fmt::format("{:<10} {}: {:.1f} s", study.name, section.title, section.seconds));
     // After each: what stops the next takes nothing of this one away.
-    write_study(options.output, result, origin, gnuplot);
-    write_report(options.output, results, origin, gnuplot.has_value());
+    write_tables(options.output, result, origin);
+    write_result(options.output, results, origin);
+    if (gnuplot) draw_charts(options.output, result, *gnuplot);
+    write_page(options.output, results, origin, gnuplot.has_value());
   }
   terminal.say("report     " + (std::filesystem::path(options.output) / "report.html").string());
   terminal.result(study_result(results, origin));
