@@ -70,3 +70,33 @@ TEST_CASE("voxref plan writes settings that cone takes, and says what it measure
       0);
   check_same_bits(voxref::read_image(place.path("cone.exr")), voxref::read_image(place.path("again.exr")));
 }
+
+TEST_CASE("voxref plan names and writes the closest, and exits with 1, where nothing reaches the budget",
+          "[plan][cli]") {
+  const Workplace place;
+  voxref::write_text(place.path("plan.json"), "of an earlier plan");
+  const std::string fixed = "--set storage=unorm8 --set bounce.count=0 --set grid.resolution=24 --set cone.step=1";
+  const Outcome outcome = place.run("plan point.glb --budget 0.001 --size 8x8 -o plan.json --json " + fixed);
+  INFO(outcome.err);
+  CHECK(outcome.status == 1);
+  CHECK(contains(outcome.err, "no setting reaches 0.1 %"));
+  CHECK(contains(outcome.err, "closest   error"));
+  const json plan = json::parse(outcome.out);
+  CHECK(plan["reached"] == false);
+  CHECK(plan["plan"].is_null());
+  CHECK(plan["closest"]["rel_error"] > 0.001);
+  CHECK(plan["reference_seconds"] > 0.0);
+  CHECK(json::parse(voxref::read_file(place.path("plan.json"))) == plan["closest"]["settings"]);
+}
+
+TEST_CASE("voxref plan leaves alone what --set and --config give", "[plan][cli]") {
+  const Workplace place;
+  voxref::write_text(place.path("some.json"), R"({"grid": {"resolution": 20}, "storage": "float16"})");
+  const json plan = place.run_json(
+      "plan point.glb --budget 5 --size 8x8 --config some.json --set cone.step=0.25 --set bounce.count=0");
+  const json rows = plan["trials"]["rows"];
+  CHECK(rows.size() > 1);  // of different cones
+  for (const json& row : rows) CHECK(json(row).at(0) == 20.0);
+  for (const json& row : rows)
+    CHECK(std::vector<json>(row.begin() + 1, row.begin() + 4) == std::vector<json>{"0", "float16", 0.25});
+}

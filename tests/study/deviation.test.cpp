@@ -1,6 +1,7 @@
 #include "study/deviation.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "catch.h"
@@ -10,6 +11,7 @@
 #include "pipeline.h"
 #include "reference/path.h"
 #include "study/study_scenes.h"
+#include "study/truth.h"
 
 using namespace voxref;
 
@@ -72,6 +74,25 @@ TEST_CASE("A deviation that noise hides has an upper limit, and black against bl
   CHECK(deviation(black, black).rel_error() == 0.0);
   CHECK(deviation(black, black).bias == 0.0);
   CHECK(std::isinf(deviation(image, black).rel_error()));
+}
+
+TEST_CASE("An image with a pixel that is not finite has no error, as in Metrics", "[study]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const Measured truth{{10.0, 10.0}, {1.0, 1.0}}, exact{{10.0, 10.0}, {0.0, 0.0}};
+  const auto none = [](const Deviation& d, size_t pixels) {
+    CHECK(d.nonfinite == pixels);
+    for (const double value : {d.bias, d.rel_error(), d.rel_error_stderr(), d.square.root(3.0), d.square.root(-3.0)})
+      CHECK(std::isnan(value));
+  };
+  for (const double bad : {nan, infinity, -infinity})
+    for (const Measured& held_against : {truth, exact}) {
+      none(deviation({{10.0, bad}, {0.0, 0.0}}, held_against), 1);
+      none(deviation({{bad, bad}, {0.0, 0.0}}, held_against), 2);
+      none(deviation(held_against, {{10.0, bad}, {0.0, 0.0}}), 1);
+      none(deviation(held_against, {{10.0, 10.0}, {bad, 0.0}}), 1);
+    }
+  CHECK(std::isnan(mean_square(std::vector{1.0, nan}, std::vector{0.5, 0.5}).root()));
+  CHECK(deviation(exact, truth).nonfinite == 0);
 }
 
 TEST_CASE("What has no indirect light is compared as a whole", "[study]") {

@@ -1,6 +1,7 @@
 #include "study/pareto.h"
 
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <set>
 
@@ -16,6 +17,11 @@ TEST_CASE("The frontier holds what nothing beats in both time and error", "[stud
   const std::vector<Tradeoff> points = {{3.0, 0.2}, {1.0, 0.5}, {2.0, 0.6}, {2.0, 0.3}, {4.0, 0.2}, {1.0, 0.7}};
   CHECK(pareto_frontier(points) == std::vector<size_t>{1, 3, 0});
   CHECK(pareto_frontier({}).empty());
+  // What has no error is not the best of all, though no number is below it.
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  CHECK(pareto_frontier(std::vector<Tradeoff>{{1.0, none}, {2.0, 0.3}, {2.0, none}, {3.0, 0.2}}) ==
+        std::vector<size_t>{1, 3});
+  CHECK(pareto_frontier(std::vector<Tradeoff>{{1.0, none}}).empty());
 }
 
 TEST_CASE("A small pareto study has a row per setting, a frontier and error bars", "[study]") {
@@ -82,6 +88,21 @@ TEST_CASE("Error bars of few seeds are those of Student's distribution", "[study
   const double half = 0.5 * std::abs(errors[0] - errors[1]);
   CHECK(paths.number(0, "rel_error") == Approx(0.5 * (errors[0] + errors[1])).epsilon(1e-9));
   CHECK(paths.number(0, "rel_error_high") - paths.number(0, "rel_error") == Approx(12.706 * half).epsilon(1e-4));
+}
+
+TEST_CASE("A study of images that are not finite says so, and draws no frontier through them", "[study]") {
+  const ParetoGrid grid{{{16}, {0}, {Storage::float32}, {1.0f}, {4, 9}}, 12, 64, 1, 2, 1};
+  StudyScene plane{"plane", point_light_over_plane(), {}};
+  plane.view.camera = plane.scene.cameras.at(0);
+  plane.view.background.g = std::numeric_limits<float>::quiet_NaN();
+  const Section section = pareto_section(plane, grid, {});
+  for (size_t i = 0; i < 2; ++i) {
+    CHECK(section.tables[0].number(i, "nonfinite") > 0.0);
+    CHECK(std::isnan(section.tables[0].number(i, "rel_error")));
+    CHECK(section.tables[0].rows[i].back() == Cell(std::string()));  // not on the frontier
+  }
+  CHECK(section.text.find("Images of 2 settings have pixels that are NaN") != std::string::npos);
+  CHECK(section.text.find("contributions of the path tracer are NaN") != std::string::npos);
 }
 
 TEST_CASE("A scene without indirect light has a chart of its direct light", "[study]") {

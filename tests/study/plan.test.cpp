@@ -1,178 +1,223 @@
 #include "study/plan.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "make_scenes/builders.h"
+#include "study/study_scenes.h"
 
 using namespace voxref;
 
 namespace {
 
-/// A world whose images have five pixels, each with what one parameter does to it, and finer values cost more.
-struct SyntheticWorld {
-  SettingSpace space;
-  double spent = 0.0;
+/// Measures every point: the slow, obviously right search.
+PlanSearch exhaustive_search(const SettingSpace& space, double budget, const PlanOracle& oracle) {
+  PlanSearch search;
+  for (const SettingPoint& point : all_points(space)) {
+    search.trials.push_back(oracle.measure(point));
+    const PlanTrial& trial = search.trials.back();
+    if (!search.closest || trial.rel_error < search.closest->rel_error) search.closest = trial;
+  }
+  for (const PlanTrial& trial : search.trials)
+    if (trial.rel_error <= budget && (!search.best || oracle.cost(trial.point) < oracle.cost(search.best->point)))
+      search.best = trial;
+  return search;
+}
 
-  std::vector<double> difference(const SettingPoint& p) const {
-    const double scale = std::sqrt(double(setting_axes));
-    return {scale * 4.0 / space.resolutions[p[resolution_axis]], scale * 0.5 * std::pow(0.4, double(p[bounce_axis])),
-            scale * 0.1 * double(p[storage_axis] == 0), scale * 0.03 * double(1 - p[step_axis]),
-            scale * 0.9 / space.cones[p[cone_axis]]};
+/// The predicted time of a setting by the table of another plan, so that both use one model.
+double time_in(const Table& trials, const Settings& settings) {
+  const std::vector<Cell> wanted = setting_cells(settings);
+  for (size_t i = 0; i < trials.rows.size(); ++i)
+    if (std::equal(wanted.begin(), wanted.end(), trials.rows[i].begin())) return trials.number(i, "time");
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Plans for the scene within the budgets, and holds each plan against all settings of the space.
+void check_against_exhaustive(const StudyScene& scene, int width, PlanOptions options,
+                              const std::vector<double>& budgets) {
+  const Caster caster(scene.scene);
+  const View view = sized(scene.view, width);
+  const Settings base;
+  PlanOptions slow = options;
+  slow.budget = 0.0;
+  slow.search = exhaustive_search;
+  const Plan everything = make_plan(scene.scene, caster, view, base, slow);
+  for (const double budget : budgets) {
+    options.budget = budget;
+    const Plan plan = make_plan(scene.scene, caster, view, base, options);
+    double cheapest = std::numeric_limits<double>::infinity();
+    std::string cheapest_words = "nothing";
+    for (size_t i = 0; i < everything.trials.rows.size(); ++i)
+      if (everything.trials.number(i, "rel_error") <= budget && everything.trials.number(i, "time") < cheapest) {
+        cheapest = everything.trials.number(i, "time");
+        cheapest_words.clear();
+        for (size_t c = 0; c < setting_columns().size(); ++c)
+          cheapest_words += display(everything.trials.rows[i][c]) + " ";
+      }
+    const double time = plan.best ? time_in(everything.trials, plan.best->settings) : cheapest;
+    std::cout << fmt::format(
+        "{:<18} {:>4.0f} %  plan {:<52} {:.3g} s, best {:<32} {:.3g} s; {} of {} measured, {:.1f} % "
+        "of the work\n",
+        scene.name, 100 * budget, plan.best ? setting_words(plan.best->settings) : "nothing", time, cheapest_words,
+        cheapest, plan.trials.rows.size(), everything.trials.rows.size(), 100 * plan.seconds / everything.seconds);
+    CAPTURE(scene.name, budget, plan.trials.rows.size(), plan.seconds, everything.seconds);
+    CHECK(plan.best.has_value() == std::isfinite(cheapest));
+    if (plan.best) CHECK(time <= 1.25 * cheapest);
+    CHECK(plan.seconds <= 0.1 * everything.seconds);
+    if (plan.cheaper) CHECK(plan.cheaper->seconds < plan.best->seconds);
+    if (plan.better) CHECK(plan.better->rel_error < plan.best->rel_error);
   }
-  double error(const SettingPoint& p) const {
-    double square = 0.0;
-    for (const double d : difference(p)) square += d * d / double(setting_axes);
-    return std::sqrt(square);
-  }
-  double cost(const SettingPoint& p) const {
-    const double side = space.resolutions[p[resolution_axis]];
-    return (1.0 + double(p[step_axis])) *
-           (side * side * (1.0 + double(p[bounce_axis])) + 2e3 * space.cones[p[cone_axis]]) *
-           (1.0 + 0.05 * double(p[storage_axis]));
-  }
-  /// Of a small image: the volume counts.
-  double effort(const SettingPoint& p) const {
-    const double side = space.resolutions[p[resolution_axis]];
-    return (1.0 + double(p[step_axis])) *
-           (side * side * (1.0 + double(p[bounce_axis])) + 20.0 * space.cones[p[cone_axis]]);
-  }
-  PlanOracle oracle() {
-    return {[this](const SettingPoint& p) {
-              spent += effort(p);
-              return PlanTrial{p, error(p), 0.0, difference(p)};
-            },
-            [this](const SettingPoint& p) { return cost(p); }};
-  }
-};
+}
 
 }  // namespace
 
-TEST_CASE("The search finds the cheapest setting of a world whose errors add up, or that there is none", "[plan]") {
-  for (const double budget : {0.6, 0.4, 0.2, 0.1, 0.05, 0.03, 0.001}) {
-    SyntheticWorld world;
-    const PlanSearch search = search_plan(world.space, budget, world.oracle());
-    double cheapest = std::numeric_limits<double>::infinity(), all = 0.0;
-    for (const SettingPoint& p : all_points(world.space)) {
-      if (world.error(p) <= budget) cheapest = std::min(cheapest, world.cost(p));
-      all += world.effort(p);
-    }
-    CAPTURE(budget, world.spent, all);
-    CHECK(search.best.has_value() == std::isfinite(cheapest));
-    CHECK(search.closest.has_value());
-    if (search.best) CHECK(world.cost(search.best->point) <= 1.25 * cheapest);
-    CHECK(world.spent <= 0.1 * all);
-  }
+TEST_CASE("The plan for a real scene is as cheap as an exhaustive search's, at a tenth of its work", "[plan]") {
+  // Rates are given, so that no clock decides. At this size everything takes seconds.
+  PlanOptions options;
+  options.space = {
+      {16, 32, 64}, {0, 1, 3}, {Storage::unorm8, Storage::float16, Storage::float32}, {1.0f, 0.5f}, {4, 9, 16}};
+  options.width = 8;
+  options.reference_spp = 256;
+  options.rates = StageRates{};
+  check_against_exhaustive(cornell_point_scene(), 128, options, {0.5, 0.3});
 }
 
-TEST_CASE("A budget far out of reach is given up before the finest resolution is paid for", "[plan]") {
-  // Errors halve from resolution to resolution, from 0.13 at the coarsest: 0.001 is seven of them away, not three.
-  SyntheticWorld world;
-  const PlanSearch search = search_plan(world.space, 0.001, world.oracle());
-  CHECK(!search.best);
-  for (const PlanTrial& trial : search.trials)
-    CHECK(trial.point[resolution_axis] + 1 < world.space.size(resolution_axis));
+namespace {
+
+/// Budgets of 40, 20 and 10 %. Work is counted by fixed rates, so that a busy machine decides nothing. All resolutions
+/// are halved: 256 voxels would take the exhaustive search, and nothing else, four times as long.
+void check_plans_of(const StudyScene& scene) {
+  PlanOptions options;
+  options.rates = StageRates{};
+  options.space.resolutions = {16, 32, 64, 128};
+  check_against_exhaustive(scene, 512, options, {0.4, 0.2, 0.1});
 }
 
-TEST_CASE("Noise of the truth, which every difference holds, hides no setting that is within the budget", "[plan]") {
-  // As large as a budget that no setting of the coarsest resolution reaches: predictions that counted it would pass all
-  // by, or pay for more than it takes.
-  constexpr double budget = 0.1, noise = budget * budget;
-  SyntheticWorld world, noisy;
-  PlanOracle oracle = noisy.oracle();
-  const auto measure = oracle.measure;
-  oracle.measure = [&](const SettingPoint& p) {
-    PlanTrial trial = measure(p);
-    // Two pixels of opposite noise for each that there is; all three together keep the mean square, and add the noise.
-    const size_t pixels = trial.difference.size();
-    for (double& d : trial.difference) d *= std::sqrt(3.0);
-    for (size_t i = 0; i < pixels; ++i)
-      for (const double sign : {-1.0, 1.0}) trial.difference.push_back(sign * std::sqrt(1.5 * noise));
-    return trial;
+}  // namespace
+
+TEST_CASE("Plans for the Cornell box are as cheap as an exhaustive search's", "[.long][plan]") {
+  check_plans_of(cornell_point_scene());
+}
+
+TEST_CASE("Plans for Light Box are as cheap as an exhaustive search's", "[.long][plan]") {
+  check_plans_of(light_box_scene());
+}
+
+TEST_CASE("Plans for Sponza are as cheap as an exhaustive search's", "[.long][plan]") {
+  const auto file = shared_file("assets/scenes/sponza.glb");
+  if (!file) VOXREF_SKIP("sponza.glb is absent");
+  check_plans_of(*public_scene("sponza", file->parent_path().parent_path().parent_path(), false));
+}
+
+TEST_CASE("A scene without light is planned: black against black is no error", "[plan]") {
+  Scene scene = cornell_box(CornellLight::point);
+  scene.lights.clear();
+  const Caster caster(scene);
+  View view;
+  view.camera = scene.cameras.at(0);
+  PlanOptions options;
+  options.space = {{16, 24}, {0, 1}, {Storage::unorm8}, {1.0f}, {4, 6}};
+  options.width = 8;
+  options.reference_spp = 16;
+  options.rates = StageRates{};
+  const Plan plan = make_plan(scene, caster, sized(view, 64), {}, options);
+  REQUIRE(plan.best);
+  CHECK(plan.best->rel_error == 0.0);
+  CHECK(plan.best->settings.grid.resolution == 16);
+  CHECK(!plan.better);
+  // Not a number would be passed over in silence.
+  options.search = [](const SettingSpace& space, double budget, const PlanOracle& oracle) {
+    CHECK(oracle.noise == 0.0);
+    for (const double d : oracle.measure({}).difference) CHECK(d == 0.0);
+    return search_plan(space, budget, oracle);
   };
-  oracle.noise = noise;
-  const PlanSearch with = search_plan(noisy.space, budget, oracle),
-                   without = search_plan(world.space, budget, world.oracle());
-  REQUIRE(with.best);
-  REQUIRE(without.best);
-  CHECK(with.best->point[resolution_axis] > 0);
-  CHECK(with.best->point == without.best->point);
-  CHECK(with.trials.size() == without.trials.size());
+  make_plan(scene, caster, sized(view, 64), {}, options);
 }
 
-TEST_CASE("The next steps lie beside the plan, one value along one axis", "[plan]") {
-  for (const double budget : {0.6, 0.4, 0.3, 0.2, 0.1}) {
-    SyntheticWorld world;
-    const PlanSearch search = search_plan(world.space, budget, world.oracle());
-    CAPTURE(budget);
-    REQUIRE(search.best);
-    const SettingPoint& best = search.best->point;
-    const auto apart = [&](const PlanTrial& other) {
-      size_t axes = 0;
-      for (size_t a = 0; a < setting_axes; ++a) axes += other.point[a] != best[a];
-      return axes;
-    };
-    if (search.cheaper) {
-      CHECK(apart(*search.cheaper) == 1);
-      CHECK(world.cost(search.cheaper->point) < world.cost(best));
-      CHECK(search.cheaper->rel_error > budget);  // else it would be the plan
-    }
-    REQUIRE(search.better);
-    CHECK(apart(*search.better) == 1);
-    CHECK(search.better->rel_error < search.best->rel_error);
-    for (size_t a = 0; a < setting_axes; ++a) {
-      SettingPoint up = best, down = best;
-      // Of all steps upward that win anything the cheapest; of all downward that save anything the most accurate.
-      if (++up[a] < world.space.size(a) && world.error(up) < 0.96 * search.best->rel_error)
-        CHECK(world.cost(search.better->point) <= world.cost(up));
-      if (best[a] == 0) continue;
-      --down[a];
-      if (!(world.cost(down) < world.cost(best))) continue;
-      REQUIRE(search.cheaper);
-      CHECK(search.cheaper->rel_error <= world.error(down));
-    }
+TEST_CASE("No budget is reached by images with a NaN, and the plan says how many pixels", "[plan]") {
+  const Scene scene = point_light_over_plane();
+  View view;
+  view.camera = scene.cameras.at(0);
+  view.background.g = std::numeric_limits<float>::quiet_NaN();
+  PlanOptions options;
+  options.space = {{16, 24}, {0}, {Storage::float32}, {1.0f}, {4, 6}};
+  options.width = 8;
+  options.reference_spp = 16;
+  options.budget = 1e6;
+  const Plan plan = make_plan(scene, Caster(scene), sized(view, 64), {}, options);
+  CHECK(!plan.best);
+  CHECK(plan.closest.nonfinite > 0);
+  CHECK(std::isnan(plan.closest.rel_error));
+  for (size_t i = 0; i < plan.trials.rows.size(); ++i) CHECK(plan.trials.number(i, "nonfinite") > 0.0);
+  REQUIRE(plan.not_finite.size() == 2);
+  CHECK(plan.not_finite[0].find("contributions of the path tracer are NaN") != std::string::npos);
+  CHECK(plan.not_finite[1].find(fmt::format("up to {}", plan.closest.nonfinite)) != std::string::npos);
+}
+
+TEST_CASE("The memory that a plan names is that of the run at full size", "[plan]") {
+  const Scene scene = cornell_box(CornellLight::point);
+  const Caster caster(scene);
+  View view;
+  view.camera = scene.cameras.at(0);
+  view = sized(view, 96);
+  PlanOptions options;
+  options.space = {{16, 32}, {0, 1}, {Storage::unorm8, Storage::float32}, {1.0f}, {4, 9}};
+  options.width = 8;
+  options.reference_spp = 64;
+  options.rates = StageRates{};
+  options.budget = 0.4;
+  const Plan plan = make_plan(scene, caster, view, {}, options);
+  REQUIRE(plan.best);
+  for (const auto& planned : {plan.best, plan.cheaper, plan.better, std::optional(plan.closest)}) {
+    if (!planned) continue;
+    const ConeTraceResult full = cone_trace(scene, caster, view, planned->settings);
+    const Image& image = full.image.image;
+    const size_t bytes = full.bytes.at("total") + image.pixel_count() * image.channels().size() * sizeof(float);
+    CAPTURE(setting_words(planned->settings));
+    // Volumes do not know the image's size. A vector that was copied, as the runner copies surfaces, may have less
+    // room to spare than one that grew: 1 %.
+    CHECK(double(planned->bytes) == Approx(double(bytes)).epsilon(0.01));
   }
 }
 
-TEST_CASE("A step upward that promises more than it holds is not offered", "[plan]") {
-  size_t deceived = 0;
-  for (const double budget : {0.4, 0.3, 0.2, 0.1, 0.05}) {
-    SyntheticWorld world;
-    const PlanSearch honest = search_plan(world.space, budget, world.oracle());
-    CAPTURE(budget);
-    REQUIRE(honest.better);
-    if (honest.trials.back().point != honest.better->point) continue;  // was measured before: nothing is promised
-    ++deceived;
-    PlanOracle oracle = world.oracle();
-    const auto measure = oracle.measure;
-    oracle.measure = [&](const SettingPoint& p) {
-      PlanTrial trial = measure(p);
-      if (p == honest.better->point) trial.rel_error *= 3.0;
-      return trial;
-    };
-    const PlanSearch search = search_plan(world.space, budget, oracle);
-    REQUIRE(search.best);
-    CHECK(search.best->point == honest.best->point);
-    if (search.better) CHECK(search.better->rel_error < search.best->rel_error);
+TEST_CASE("The next steps and the plan have the times of its table", "[plan]") {
+  // Times are learned from the clock, which decides what the plan is, but not whether it agrees with itself.
+  PlanOptions options;
+  options.space = {{16, 24, 32}, {0, 1}, {Storage::unorm8, Storage::float32}, {1.0f, 0.5f}, {4, 9, 16}};
+  options.width = 8;
+  options.reference_spp = 64;
+  const StudyScene scene = cornell_point_scene();
+  for (const double budget : {0.6, 0.4}) {
+    options.budget = budget;
+    const Plan plan = make_plan(scene.scene, Caster(scene.scene), sized(scene.view, 64), {}, options);
+    CHECK(plan.seconds > 0.0);
+    CHECK(plan.reference_seconds > 0.0);
+    for (const auto& planned : {plan.best, plan.cheaper, plan.better, std::optional(plan.closest)})
+      if (planned) CHECK(time_in(plan.trials, planned->settings) == planned->seconds);
+    for (size_t i = 0; i < plan.trials.rows.size(); ++i)
+      if (plan.trials.number(i, "rel_error") <= budget) {
+        REQUIRE(plan.best);
+        CHECK(plan.best->seconds <= plan.trials.number(i, "time"));
+      }
   }
-  CHECK(deceived > 0);
 }
 
-TEST_CASE("A plan drops what the scene does not use", "[plan]") {
-  const Scene open = point_light_over_plane();
-  const Caster caster(open);
-  const Visibility visibility = measure_visibility(open, caster);
-  CHECK(visibility.hit_share == 0.0);
-  SettingSpace space;
-  CHECK(drop_unused(space, open, visibility, glm::vec3(0.0f)).size() == 3);
-  CHECK(space.bounces == std::vector<std::optional<int>>{0});
-  CHECK(space.cones.size() == 1);
-  const Scene room = cornell_box(CornellLight::area);
-  SettingSpace all;
-  CHECK(drop_unused(all, room, measure_visibility(room, Caster(room)), glm::vec3(0.0f)).size() == 1);  // not specular
-  CHECK(all.bounces.size() == SettingSpace{}.bounces.size());
-  Scene shiny = room;
-  shiny.materials[0].metallic = 1.0f;
-  CHECK(drop_unused(all, shiny, measure_visibility(shiny, Caster(shiny)), glm::vec3(0.0f)).empty());
+TEST_CASE("A plan's settings come back from its JSON and its flags", "[plan]") {
+  Settings settings = profile("villegas2016");
+  settings.grid.resolution = 64;
+  settings.render.cone.step = 0.25f;
+  settings.bounce.count.reset();
+  CHECK(config(settings) == nlohmann::json{{"profile", "villegas2016"},
+                                           {"grid", {{"resolution", 64}}},
+                                           {"cone", {{"step", 0.25}}},
+                                           {"bounce", {{"count", "auto"}}}});
+  Settings again;
+  apply_json(again, config(settings));
+  CHECK(to_json(again) == to_json(settings));
+  CHECK(assignments(settings) ==
+        "--profile villegas2016 --set bounce.count=auto --set cone.step=0.25 --set grid.resolution=64");
 }

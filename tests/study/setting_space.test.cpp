@@ -34,3 +34,20 @@ TEST_CASE("A setting's cells and words tell it from others", "[plan]") {
   CHECK(setting_words(settings) == "64 voxels, 1 bounce, unorm8, step 0.5, 9 cones");
   CHECK(setting_words(at(space, {1, 4, 2, 0, 0}, base)) == "64 voxels, auto bounces, float32, step 1, 4 cones");
 }
+
+TEST_CASE("An axis that is fixed has the settings' value under its parameter's name", "[study]") {
+  // Values beside all defaults, written as --set has them.
+  const std::array<const char*, setting_axes> values = {"48", "5", "float16", "0.25", "12"};
+  SettingSpace all;
+  Settings settings;
+  for (size_t axis = 0; axis < setting_axes; ++axis) {
+    apply_assignment(settings, std::string(axis_parameters()[axis]) + "=" + values[axis]);
+    SettingSpace one;
+    fix(one, axis, settings);
+    CHECK(all_points(one).size() == all_points({}).size() / SettingSpace{}.size(axis));
+    CHECK(display(setting_cells(at(one, {}, {}))[axis]) == values[axis]);
+    fix(all, axis, settings);
+  }
+  REQUIRE(all_points(all).size() == 1);
+  CHECK(setting_words(at(all, {}, {})) == "48 voxels, 5 bounces, float16, step 0.25, 12 cones");
+}

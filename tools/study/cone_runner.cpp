@@ -28,7 +28,7 @@ const SurfaceGrid& ConeRunner::surfaces(const Settings& settings) {
   const auto start = std::chrono::steady_clock::now();
   surfaces_ = voxelize(scene_, fit_grid(scene_.bounds(), settings.grid), settings.voxelize, progress_);
   voxelize_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  spent_ += voxelize_seconds_;
+  ran_.voxelize = voxelize_seconds_;
   surfaces_of_ = key;
   return surfaces_;
 }
@@ -38,17 +38,22 @@ const LitVoxels& ConeRunner::lit(const Settings& settings) {
   if (lit_ && key == lit_of_) return *lit_;
   lit_.reset();  // before the next is made: one volume at a time
   lit_ = light_voxels(scene_, caster_, surfaces(settings), view_.background, settings, nullptr, progress_);
-  spent_ += lit_->seconds.total;
+  const double voxelizing = ran_.voxelize;
+  ran_ = lit_->seconds;
+  ran_.voxelize = voxelizing;
   lit_of_ = key;
   return *lit_;
 }
 
-ConeTraceResult ConeRunner::operator()(const Settings& settings) {
+ConeTraceResult ConeRunner::operator()(const Settings& settings, const View& view) {
   validate(settings);
+  ran_ = {};
   surfaces(settings);
   const LitVoxels& volume = lit(settings);
-  ConeTraceResult result = gather_image(scene_, caster_, view_, settings, volume, progress_);
-  spent_ += result.seconds.total - volume.seconds.total;
+  ConeTraceResult result = gather_image(scene_, caster_, view, settings, volume, progress_);
+  ran_.cone_trace = result.seconds.cone_trace;
+  ran_.total += ran_.voxelize + ran_.cone_trace;
+  spent_ += ran_.total;
   result.seconds.voxelize = voxelize_seconds_;
   result.seconds.total += voxelize_seconds_;
   return result;

@@ -15,9 +15,13 @@ class ConeRunner {
       : scene_(scene), caster_(caster), view_(view), progress_(progress) {}
 
   /// The same bits as cone_trace(). @throws Error as that
-  ConeTraceResult operator()(const Settings& settings);
+  ConeTraceResult operator()(const Settings& settings) { return (*this)(settings, view_); }
+  /// The same from another camera, or of another size. @param view with the same background
+  ConeTraceResult operator()(const Settings& settings, const View& view);
 
-  /// Seconds that were spent, each stage once.
+  /// Seconds that the last call spent; of a stage whose result was there from one before it, 0.
+  const StageSeconds& ran() const { return ran_; }
+  /// Those of all calls: each stage counts as often as it ran.
   double spent() const { return spent_; }
 
  private:
@@ -31,6 +35,7 @@ class ConeRunner {
   std::string surfaces_of_, lit_of_;  // the parameters that they depend on, as text
   SurfaceGrid surfaces_;
   double voxelize_seconds_ = 0.0, spent_ = 0.0;
+  StageSeconds ran_;
   std::optional<LitVoxels> lit_;
 };
 

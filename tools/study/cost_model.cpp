@@ -36,30 +36,27 @@ double mean_tangent(const ConeSet& set) {
 
 }  // namespace
 
-Visibility measure_visibility(const Scene& scene, const Caster& caster) {
-  constexpr uint32_t rays = 4096;  // the share is known to 1.6 %
+double mean_sight(const Scene& scene, const Caster& caster) {
+  constexpr uint32_t points = 4096;  // where rays' lengths scatter by all of their mean, it is known to 1.6 %
   const std::vector<double> areas = cumulated_areas(scene);
-  Visibility result;
-  if (areas.empty() || !(areas.back() > 0.0)) return result;
+  if (areas.empty() || !(areas.back() > 0.0)) return 0.0;
   size_t hits = 0;
-  for (uint32_t i = 0; i < rays; ++i) {
+  double sum = 0.0;
+  for (uint32_t i = 0; i < points; ++i) {
     const Sampler sampler(randomization_key(0, 0, 0, 0), i);
     const double wanted = double(sampler.get_1d(0)) * areas.back();
     const auto t = static_cast<size_t>(std::upper_bound(areas.begin(), areas.end(), wanted) - areas.begin());
     const glm::uvec3 corners = scene.triangles[std::min(t, areas.size() - 1)];
     const glm::vec3 a = scene.positions[corners.x], b = scene.positions[corners.y], c = scene.positions[corners.z];
     const glm::vec2 uv = uniform_triangle(sampler.get_2d(1));
-    const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
-    const Ray ray = caster.leave((1.0f - uv.x - uv.y) * a + uv.x * b + uv.y * c, normal,
-                                 Frame(normal).to_world(cosine_hemisphere(sampler.get_2d(2))));
-    if (const Hit hit = caster.closest(ray)) {
-      ++hits;
-      result.mean_distance += double(hit.t);
+    const glm::vec3 point = (1.0f - uv.x - uv.y) * a + uv.x * b + uv.y * c;
+    const glm::vec3 front = glm::normalize(glm::cross(b - a, c - a));
+    for (const glm::vec3& normal : {front, -front}) {
+      const glm::vec3 direction = Frame(normal).to_world(cosine_hemisphere(sampler.get_2d(2)));
+      if (const Hit hit = caster.closest(caster.leave(point, normal, direction))) ++hits, sum += double(hit.t);
     }
   }
-  result.hit_share = double(hits) / rays;
-  if (hits > 0) result.mean_distance /= double(hits);
-  return result;
+  return hits > 0 ? sum / double(hits) : 0.0;
 }
 
 double CostModel::look_ups(double tangent, double step, double distance) {
@@ -68,21 +65,22 @@ double CostModel::look_ups(double tangent, double step, double distance) {
   return fine / step + std::log(distance / fine) / std::log1p(2.0 * tangent * step) + 1.0;
 }
 
-void CostModel::learn(const Settings& settings, const ConeTraceResult& result, size_t pixels, bool times) {
+void CostModel::learn_image(double seconds) { samples_.push_back({&StageRates::image, {}, seconds}); }
+
+void CostModel::learn(const Settings& settings, const ConeTraceResult& result, size_t pixels, const StageSeconds& ran) {
   Count& count = counts_[settings.grid.resolution];
   count.voxels = double(result.voxels_occupied);
   count.voxel_side = double(result.grid.voxel);
   if (!settings.bounce.count) count.auto_bounces = result.bounces;
-  if (!times) return;
   const Work done = work(settings, pixels);
-  const StageSeconds& s = result.seconds;
-  const auto rate = [](double seconds, double units) {
-    return units > 0.0 ? seconds / units : std::numeric_limits<double>::quiet_NaN();
+  const auto add = [&](Stage stage, double seconds, double units, double beside = 0.0) {
+    if (seconds > 0.0 && units > 0.0) samples_.push_back({stage, settings, std::max(seconds - beside, 0.0) / units});
   };
-  samples_.push_back(
-      {settings,
-       {rate(s.voxelize, done.voxels), rate(s.shade + s.mipmap, done.voxels), rate(s.bounce, done.bounce_look_ups),
-        rate(s.prepare, done.voxels), rate(s.cone_trace, done.pixel_look_ups)}});
+  add(&StageRates::voxelize, ran.voxelize, done.voxels);
+  add(&StageRates::shade, ran.shade + ran.mipmap, done.voxels);
+  add(&StageRates::look_up, ran.bounce, done.bounce_look_ups);
+  add(&StageRates::prepare, ran.prepare, done.voxels);
+  add(&StageRates::pixel_look_up, ran.cone_trace, done.pixel_look_ups, rate(&StageRates::image, settings));
 }
 
 CostModel::Work CostModel::work(const Settings& settings, size_t pixels) const {
@@ -92,7 +90,7 @@ CostModel::Work CostModel::work(const Settings& settings, size_t pixels) const {
                                         [&](const auto& a, const auto& b) { return far(a.first) < far(b.first); });
   const double scale = double(settings.grid.resolution) / nearest->first;
   const double step = double(settings.render.cone.step);
-  const double distance = std::max(visibility_.mean_distance / nearest->second.voxel_side * scale, 1.0);
+  const double distance = std::max(sight_ / nearest->second.voxel_side * scale, 1.0);
   const auto cone_cost = [&](const ConeSet& set) {
     return double(set.cones.size()) * look_ups(std::max(mean_tangent(set), 1e-3), step, distance);
   };
@@ -109,40 +107,39 @@ CostModel::Work CostModel::work(const Settings& settings, size_t pixels) const {
   return work;
 }
 
-StageRates CostModel::rates(const Settings& wanted) const {
-  // What an image's look-ups take depends on cones and step too, since each pixel costs something itself.
-  const auto median = [&](double StageRates::*rate, bool image) {
-    const auto unlike = [&](const Settings& s) {
-      const ConeOptions &a = s.render.cone, &b = wanted.render.cone;
-      return std::tuple(image ? std::abs(std::log(double(a.diffuse) / b.diffuse)) : 0.0, a.step != b.step,
-                        s.storage != wanted.storage,
-                        std::abs(std::log(double(s.grid.resolution) / wanted.grid.resolution)));
-    };
-    std::optional<decltype(unlike(wanted))> least;
-    std::vector<double> values;
-    for (const Sample& sample : samples_) {
-      if (!std::isfinite(sample.rates.*rate)) continue;
-      const auto distance = unlike(sample.settings);
-      if (least && *least < distance) continue;
-      if (least && distance < *least) values.clear();
-      least = distance;
-      values.push_back(sample.rates.*rate);
-    }
-    return values.empty() ? rates_.*rate : spread(values).median;
+double CostModel::rate(Stage stage, const Settings& wanted) const {
+  // What the stage's time per unit depends on; of an image cones and step too, since each pixel costs something itself.
+  const bool image = stage == &StageRates::pixel_look_up, marches = image || stage == &StageRates::look_up;
+  const bool stores = stage != &StageRates::voxelize;
+  const auto ratio = [](int a, int b) { return std::abs(std::log(double(a) / b)); };
+  const auto unlike = [&](const Settings& s) {
+    const ConeOptions &a = s.render.cone, &b = wanted.render.cone;
+    const double finer = ratio(s.grid.resolution, wanted.grid.resolution);
+    return std::tuple(image ? ratio(a.diffuse, b.diffuse) : finer, marches && a.step != b.step,
+                      stores && s.storage != wanted.storage, finer);
   };
-  return {median(&StageRates::voxelize, false), median(&StageRates::shade, false), median(&StageRates::look_up, false),
-          median(&StageRates::prepare, false), median(&StageRates::pixel_look_up, true)};
+  std::optional<decltype(unlike(wanted))> least;
+  std::vector<double> rates;
+  for (const Sample& sample : samples_) {
+    if (sample.stage != stage) continue;
+    const auto distance = unlike(sample.settings);
+    if (least && *least < distance) continue;
+    if (least && distance < *least) rates.clear();
+    least = distance;
+    rates.push_back(sample.rate);
+  }
+  return rates.empty() ? rates_.*stage : spread(rates).median;
 }
 
 StageSeconds CostModel::predict(const Settings& settings, size_t pixels) const {
   const Work w = work(settings, pixels);
-  const StageRates r = rates(settings);
   StageSeconds seconds;
-  seconds.voxelize = r.voxelize * w.voxels;
-  seconds.shade = r.shade * w.voxels;
-  seconds.bounce = r.look_up * w.bounce_look_ups;
-  seconds.prepare = r.prepare * w.voxels;
-  seconds.cone_trace = r.pixel_look_up * w.pixel_look_ups;
+  seconds.voxelize = rate(&StageRates::voxelize, settings) * w.voxels;
+  seconds.shade = rate(&StageRates::shade, settings) * w.voxels;
+  seconds.bounce = rate(&StageRates::look_up, settings) * w.bounce_look_ups;
+  seconds.prepare = rate(&StageRates::prepare, settings) * w.voxels;
+  seconds.cone_trace =
+      rate(&StageRates::image, settings) + rate(&StageRates::pixel_look_up, settings) * w.pixel_look_ups;
   seconds.total = seconds.voxelize + seconds.shade + seconds.bounce + seconds.prepare + seconds.cone_trace;
   return seconds;
 }

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace voxref {
 
-double MeanSquare::root(double errors) const { return std::sqrt(std::max(0.0, value + errors * error)); }
+double MeanSquare::root(double errors) const {
+  const double moved = value + errors * error;
+  return moved < 0.0 ? 0.0 : std::sqrt(moved);  // std::max(0.0, NaN) would be 0, the best of all errors
+}
 
 MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances) {
   const auto count = static_cast<double>(differences.size());
@@ -19,20 +23,24 @@ MeanSquare mean_square(std::span<const double> differences, std::span<const doub
   return {sum / count, std::sqrt(std::max(least, variance)) / count};
 }
 
+double relative(double value, double unit) { return value == 0.0 ? 0.0 : value / unit; }
+
 Deviation deviation(const Measured& a, const Measured& b) {
+  size_t nonfinite = 0;
   std::vector<double> differences(b.value.size()), variances(b.value.size());
   for (size_t i = 0; i < b.value.size(); ++i) {
     differences[i] = a.value[i] - b.value[i];
     variances[i] = a.standard_error[i] * a.standard_error[i] + b.standard_error[i] * b.standard_error[i];
+    nonfinite += !std::isfinite(differences[i]) || !std::isfinite(variances[i]);
+  }
+  if (nonfinite > 0) {  // as Metrics: a mean over the other pixels would be an error of another image
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return {nonfinite, none, {none, none}};
   }
   const double mean = b.mean();
-  const auto over = [](double value, double unit) { return value == 0.0 ? 0.0 : value / unit; };  // 0 of black is 0
   const MeanSquare square = mean_square(differences, variances);
-  return {over(a.mean() - mean, mean), {over(square.value, mean * mean), over(square.error, mean * mean)}};
-}
-
-bool has_indirect_to_compare(const Scene& scene, const View& view, const Image& path) {
-  return compares_indirect(scene, view) && measured_path(path, true).mean() > 0.0;
+  return {
+      0, relative(a.mean() - mean, mean), {relative(square.value, mean * mean), relative(square.error, mean * mean)}};
 }
 
 }  // namespace voxref

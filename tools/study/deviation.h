@@ -9,7 +9,7 @@ namespace voxref {
 struct MeanSquare {
   double value = 0;  ///< unbiased, and therefore below 0 at times where there is little but noise
   double error = 0;  ///< its standard error
-  /// Square root of the value moved by so many standard errors; 0 where that is negative.
+  /// Square root of the value moved by so many standard errors; 0 where that is negative, NaN where either is.
   double root(double errors = 0.0) const;
   /// Half of what one standard error to either side spans in the root.
   double root_stderr() const { return 0.5 * (root(1.0) - root(-1.0)); }
@@ -20,10 +20,14 @@ struct MeanSquare {
 /// and 2 v^2 the least that it can be.
 MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances);
 
+/// value / unit, but 0 of 0 is 0: black against black is no error.
+double relative(double value, double unit);
+
 /// How far one image is from another that is taken for true.
 struct Deviation {
-  double bias = 0;    ///< mean(a) / mean(b) - 1
-  MeanSquare square;  ///< of (a - b) / mean(b), the noise of both taken out
+  size_t nonfinite = 0;  ///< pixels in which either image is NaN or infinite; the rest is NaN where there are any
+  double bias = 0;       ///< mean(a) / mean(b) - 1
+  MeanSquare square;     ///< of (a - b) / mean(b), the noise of both taken out
   /// rel_error of cli.md.
   double rel_error() const { return square.root(); }
   double rel_error_stderr() const { return square.root_stderr(); }
@@ -31,9 +35,5 @@ struct Deviation {
 
 /// 0 where both are black; infinite where b alone is.
 Deviation deviation(const Measured& a, const Measured& b);
-
-/// Whether studies and plans compare the indirect light: as compares_indirect, but all light where paths found none
-/// that is indirect. @param path of the scene from there
-bool has_indirect_to_compare(const Scene& scene, const View& view, const Image& path);
 
 }  // namespace voxref

@@ -7,11 +7,11 @@
 
 #include "error.h"
 #include "parallel.h"
-#include "reference/path.h"
 #include "settings_table.h"
 #include "study/cone_runner.h"
 #include "study/ladder.h"
 #include "study/ray_gather.h"
+#include "study/truth.h"
 
 namespace voxref {
 
@@ -54,8 +54,7 @@ class Ladder {
       path.randomizations = 1;
       path.max_depth = max_depth;
       path.seed = static_cast<uint64_t>(t + 1);  // the same for all rungs: what they share cancels
-      const PathResult result = path_trace(scene_, caster_, view_, path, progress_);
-      if (result.interrupted) throw Interrupted();
+      const PathResult result = trace_paths(scene_, caster_, view_, path, progress_);
       rung.tries.push_back(measured_path(result.image, false).value);
       if (max_depth) continue;
       const auto direct = result.image.layer("direct");
@@ -161,8 +160,7 @@ Table closure(const StudyScene& scene, const View& view, const LadderOptions& op
   PathOptions path;
   path.spp = options.spp * options.tries;
   path.seed = static_cast<uint64_t>(options.tries + 1);  // the rungs have those before
-  const PathResult traced = path_trace(scene.scene, caster, view, path, progress);
-  if (traced.interrupted) throw Interrupted();
+  const PathResult traced = trace_paths(scene.scene, caster, view, path, progress);
   Settings settings;
   settings.grid.resolution = options.resolution;
   settings.storage = published_storage;

@@ -12,10 +12,10 @@
 #include <string_view>
 
 #include "compare/statistics.h"
-#include "reference/path.h"
 #include "study/cone_runner.h"
 #include "study/deviation.h"
 #include "study/study_scenes.h"
+#include "study/truth.h"
 
 namespace voxref {
 
@@ -24,28 +24,18 @@ namespace {
 constexpr double significance = 0.05;  // outside of 95 % confidence limits
 constexpr double normal_limit = 1.96;  // standard errors to that; the noise of thousands of pixels adds to a normal one
 
-PathResult trace_paths(const StudyScene& scene, const Caster& caster, const View& view, const PathOptions& options,
-                       const Progress& progress) {
-  PathResult result = path_trace(scene.scene, caster, view, options, progress);
-  if (result.interrupted) throw Interrupted();
-  return result;
-}
-
 struct Setup {
   const StudyScene& scene;
   View view;
   Caster caster;
-  bool indirect = false;
-  Measured truth{};
+  Truth truth{};
 };
 
 Setup make_setup(const StudyScene& scene, const ParetoGrid& grid, const Progress& progress) {
   Setup setup{scene, sized(scene.view, grid.width), Caster(scene.scene)};
   PathOptions options;
   options.spp = grid.reference_spp;
-  const Image truth = trace_paths(scene, setup.caster, setup.view, options, progress).image;
-  setup.indirect = has_indirect_to_compare(scene.scene, setup.view, truth);
-  setup.truth = measured_path(truth, setup.indirect);
+  setup.truth = trace_truth(scene.scene, setup.caster, setup.view, options, progress);
   return setup;
 }
 
@@ -93,7 +83,9 @@ Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
               fmt::format("Cone tracer: every setting with its error and the seconds of all its stages"),
               setting_columns()};
   for (const Column& column : measured_columns()) table.columns.push_back(column);
-  table.columns.insert(table.columns.end(), {{"rel_bias", ""}, {"memory", "MiB"}, {"rounds", ""}, {"frontier", ""}});
+  table.columns.insert(
+      table.columns.end(),
+      {{"rel_bias", ""}, {"nonfinite", "pixels"}, {"memory", "MiB"}, {"rounds", ""}, {"frontier", ""}});
   struct Found {
     Settings settings;
     Deviation deviation;
@@ -102,7 +94,8 @@ Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
   std::vector<Found> found;
   const auto seconds =
       time_settings(setup, grid, progress, [&](const Settings& settings, const ConeTraceResult& result) {
-        found.push_back({settings, deviation(measured_cone(result.image.image, setup.indirect), setup.truth),
+        found.push_back({settings,
+                         deviation(measured_cone(result.image.image, setup.truth.indirect), setup.truth.light),
                          double(result.bytes.at("total"))});
       });
   for (size_t i = 0; i < found.size(); ++i) {
@@ -110,7 +103,8 @@ Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
     std::vector<Cell> row = setting_cells(found[i].settings);
     append(row, measured_cells(spread(seconds[i]), d.rel_error(),
                                {d.square.root(-normal_limit), d.square.root(normal_limit)}));
-    append(row, {d.bias, std::ldexp(found[i].bytes, -20), double(seconds[i].size()), std::string()});
+    append(row,
+           {d.bias, double(d.nonfinite), std::ldexp(found[i].bytes, -20), double(seconds[i].size()), std::string()});
     table.add(std::move(row));
   }
   return table;
@@ -129,10 +123,10 @@ Table path_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
       options.spp = spp;
       options.randomizations = 1;
       options.seed = static_cast<uint64_t>(seed);  // the truth has seed 0
-      const PathResult result = trace_paths(setup.scene, setup.caster, setup.view, options, progress);
-      Measured image = measured_path(result.image, setup.indirect);
+      const PathResult result = trace_paths(setup.scene.scene, setup.caster, setup.view, options, progress);
+      Measured image = measured_path(result.image, setup.truth.indirect);
       image.standard_error.assign(image.value.size(), 0.0);
-      errors.push_back(deviation(image, setup.truth).rel_error());
+      errors.push_back(deviation(image, setup.truth.light).rel_error());
       seconds.push_back(result.seconds);
     }
     const Estimate error = estimate(errors);
@@ -193,7 +187,7 @@ Series frontier_series(const Table& cones, std::span<const size_t> frontier, std
 Chart pareto_chart(const Setup& setup, const Table& cones, const Table& paths, std::span<const size_t> frontier) {
   Chart chart{"pareto_" + setup.scene.name,
               fmt::format("{}, {}x{} pixels: error of the {} light against time", setup.scene.name, setup.view.width,
-                          setup.view.height, setup.indirect ? "indirect" : "whole"),
+                          setup.view.height, setup.truth.indirect ? "indirect" : "whole"),
               {"time of the whole image / s", true},
               {"relative error (RMS, noise removed) / %", true}};
   std::map<double, Series> by_resolution;
@@ -211,16 +205,33 @@ Chart pareto_chart(const Setup& setup, const Table& cones, const Table& paths, s
   return chart;
 }
 
+/// Says of which settings the images have no error, and whether the truth lacks paths; empty where all is finite.
+std::string not_finite(const Table& cones, const Truth& truth) {
+  std::string text = truth.missing().empty() ? "" : "\n\n" + truth.missing() + ".";
+  size_t settings = 0;
+  double most = 0.0;
+  for (size_t i = 0; i < cones.rows.size(); ++i) {
+    settings += cones.number(i, "nonfinite") > 0.0;
+    most = std::max(most, cones.number(i, "nonfinite"));
+  }
+  if (settings == 0) return text;
+  return text + fmt::format(
+                    "\n\nImages of {} settings have pixels that are NaN or infinite, up to {}: they have no "
+                    "error, and no place on the frontier.",
+                    settings, most);
+}
+
 std::string findings(const Table& cones, const Table& paths, std::span<const size_t> frontier) {
-  const size_t best = frontier.back();
-  const double error = cones.number(best, "rel_error");
-  std::string text = fmt::format(
+  std::string text =
       "Error: RMS difference of luminance over the mean of the path-traced light, with the noise of the truth removed "
       "and 95 % confidence limits. Time: of all stages, booked to every setting that uses them, for the path tracer of "
       "its render loop; the median, and the least and the greatest measured on this machine, each setting once in a "
-      "round (column rounds). Frontier: no other setting is both as quick and as accurate.\n\n"
-      "The most accurate of {} settings is {:.1f} % off in {:.3g} s.",
-      cones.rows.size(), 100.0 * error, cones.number(best, "time"));
+      "round (column rounds). Frontier: no other setting is both as quick and as accurate.\n\n";
+  if (frontier.empty()) return text + "No setting has an error.";
+  const size_t best = frontier.back();
+  const double error = cones.number(best, "rel_error");
+  text += fmt::format("The most accurate of {} settings is {:.1f} % off in {:.3g} s.", cones.rows.size(), 100.0 * error,
+                      cones.number(best, "time"));
   for (size_t i = 0; i < paths.rows.size(); ++i)
     if (paths.number(i, "rel_error") <= error)
       return text + fmt::format(" The path tracer is as near with {} samples, in {:.3g} s.", paths.number(i, "samples"),
@@ -239,7 +250,8 @@ std::vector<size_t> pareto_frontier(std::span<const Tradeoff> points) {
   });
   std::vector<size_t> frontier;
   for (const size_t i : order)
-    if (frontier.empty() || points[i].error < points[frontier.back()].error) frontier.push_back(i);
+    if (!std::isnan(points[i].error) && (frontier.empty() || points[i].error < points[frontier.back()].error))
+      frontier.push_back(i);
   return frontier;
 }
 
@@ -250,7 +262,7 @@ Section pareto_section(const StudyScene& scene, const ParetoGrid& grid, const Pr
     const std::vector<size_t> frontier = pareto_frontier(tradeoffs(cones));
     for (const size_t i : frontier) cones.rows[i].back() = "yes";
     Table paths = path_table(setup, grid, progress);
-    section.text = findings(cones, paths, frontier);
+    section.text = findings(cones, paths, frontier) + not_finite(cones, setup.truth);
     section.charts.push_back(pareto_chart(setup, cones, paths, frontier));
     section.tables = {std::move(cones), std::move(paths)};
   });

@@ -13,7 +13,7 @@ struct Tradeoff {
   double seconds = 0, error = 0;
 };
 
-/// Indices of those that no other beats in one without losing in the other, by rising time.
+/// Indices of those that no other beats in one without losing in the other, by rising time; none whose error is NaN.
 std::vector<size_t> pareto_frontier(std::span<const Tradeoff> points);
 
 /// What is tried, and how carefully.

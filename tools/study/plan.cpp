@@ -1,234 +1,193 @@
 #include "study/plan.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
+#include <fmt/format.h>
 
-#include "scene/surface.h"
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "study/cone_runner.h"
+#include "study/deviation.h"
+#include "study/plan_unused.h"
+#include "study/study_scenes.h"
+#include "study/truth.h"
 
 namespace voxref {
 
 namespace {
 
-// What a value may change and still be dropped: as a share of the error, and in the image as a share of the budget, for
-// the coarsest resolution's own error may hide what counts at finer ones.
-constexpr double irrelevant = 0.04, hidden = 0.5;
-// How far predicted errors may be over the budget: of settings that are measured first; of those that are measured
-// where nothing else is left; of those whose volume is there anyway, so that they cost little; and of the last
-// resolution's, for the climb to be worth its cost.
-constexpr double slack = 1.1, last_slack = 1.2, volume_slack = 1.3, hope = 1.7;
+View small_view(View view, int width) {
+  view.camera.aspect = float(view.width) / float(view.height);
+  return sized(view, std::min(width, view.width));
+}
 
-/// The search's state: what has been measured, each setting once, and what is left to choose from.
-class Search {
+/// Measures settings of one scene at small size, and predicts them at full size.
+class Workbench {
  public:
-  Search(const SettingSpace& space, double budget, const PlanOracle& oracle)
-      : space_(space), budget_(budget), oracle_(oracle), kept_(all_points(space)) {}
-
-  PlanSearch run() {
-    drop_irrelevant(storage_axis);
-    drop_irrelevant(step_axis);
-    for (const SettingPoint& point : kept_)
-      if (point[resolution_axis] == 0) measure(point);
-    for (;;) {
-      std::optional<SettingPoint> next = cheapest_promising(slack, space_.size(resolution_axis));
-      if (!next && !best_) next = cheapest_promising(last_slack, climbed_.size());
-      if (next)
-        measure_volume(*next);
-      else if (best_ || !climb())
-        break;
+  Workbench(const Scene& scene, const Caster& caster, const View& view, const View& small, const Settings& base,
+            const PlanOptions& options, const SettingSpace& space, const Truth& truth, const Progress& progress)
+      : space_(space),
+        base_(base),
+        full_pixels_(size_t(view.width) * size_t(view.height)),
+        small_pixels_(size_t(small.width) * size_t(small.height)),
+        measures_times_(!options.rates),
+        progress_(progress),
+        runner_(scene, caster, small, progress),
+        cost_(mean_sight(scene, caster), options.rates.value_or(StageRates{})),
+        truth_(truth),
+        mean_(truth.light.mean()) {
+    // Counts voxels, and times the stages, before the first prediction.
+    const ConeTraceResult first = runner_(settings({}));
+    const StageSeconds ran = runner_.ran();
+    for (int round = 0; measures_times_ && round < 3; ++round) {  // the median of three outlives one busy moment
+      runner_(settings({}), sized(small, 1));
+      cost_.learn_image(runner_.ran().cone_trace);
     }
-    result_.closest = *std::min_element(result_.trials.begin(), result_.trials.end(), more_accurate);
-    if (best_) {
-      result_.best = trial(*best_);
-      look_beside(*result_.best);
-    }
-    return result_;
+    learn({}, first, ran);
   }
+
+  PlanTrial measure(const SettingPoint& point) {
+    progress_.check();
+    const ConeTraceResult result = runner_(settings(point));
+    learn(point, result, runner_.ran());
+    const Measured cone = measured_cone(result.image.image, truth_.indirect);
+    const Deviation d = deviation(cone, truth_.light);
+    bytes_[point] = result.bytes.at("total");
+    PlanTrial trial{point, d.rel_error(), d.rel_error_stderr(), {}, d.nonfinite};
+    for (size_t i = 0; i < cone.value.size(); ++i)
+      trial.difference.push_back(relative(cone.value[i] - truth_.light.value[i], mean_));
+    return trial;
+  }
+
+  /// Mean variance of a trial's differences.
+  double noise() const {
+    double sum = 0.0;
+    for (const double s : truth_.light.standard_error) sum += relative(s * s, mean_ * mean_);
+    return sum / static_cast<double>(truth_.light.standard_error.size());
+  }
+
+  Settings settings(const SettingPoint& point) const { return at(space_, point, base_); }
+  double cost(const SettingPoint& point) const { return cost_.predict(settings(point), full_pixels_).total; }
+
+  PlannedSetting planned(const PlanTrial& trial) const {
+    return {settings(trial.point),  trial.rel_error,
+            trial.rel_error_stderr, trial.nonfinite,
+            cost(trial.point),      bytes_.at(trial.point) + cone_image_bytes_per_pixel * full_pixels_};
+  }
+
+  double spent() const { return measures_times_ ? runner_.spent() : modelled_; }
 
  private:
-  static bool more_accurate(const PlanTrial& a, const PlanTrial& b) { return a.rel_error < b.rel_error; }
-  bool measured(const SettingPoint& point) const { return index_.count(point) > 0; }
-  const PlanTrial& trial(const SettingPoint& point) const { return result_.trials[index_.at(point)]; }
-
-  const PlanTrial& measure(const SettingPoint& point) {
-    if (!measured(point)) {
-      index_[point] = result_.trials.size();
-      result_.trials.push_back(oracle_.measure(point));
-      const bool cheapest = !best_ || oracle_.cost(point) < oracle_.cost(*best_);
-      const double error = result_.trials.back().rel_error;
-      if (error <= budget_ && cheapest) best_ = point;
-      while (climbed_.size() <= point[resolution_axis]) climbed_.push_back(climbed_.empty() ? error : climbed_.back());
-      for (size_t r = point[resolution_axis]; r < climbed_.size(); ++r) climbed_[r] = std::min(climbed_[r], error);
-    }
-    return trial(point);
-  }
-
-  static double rms_between(const PlanTrial& a, const PlanTrial& b) {
-    double square = 0.0;
-    for (size_t i = 0; i < a.difference.size(); ++i) {
-      const double d = a.difference[i] - b.difference[i];
-      square += d * d;
-    }
-    return std::sqrt(square / static_cast<double>(a.difference.size()));
-  }
-
-  /// Step 1: of two neighbouring values that make no difference the cheaper stays.
-  void drop_irrelevant(size_t axis) {
-    SettingPoint cheapest{}, finest{};
-    for (size_t a = bounce_axis; a < setting_axes; ++a) finest[a] = space_.size(a) - 1;
-    size_t before = 0;
-    for (size_t value = 1; value < space_.size(axis); ++value) {
-      bool matters = false;
-      for (SettingPoint corner : {cheapest, finest}) {
-        corner[axis] = before;
-        const PlanTrial coarse = measure(corner);
-        corner[axis] = value;
-        const PlanTrial& fine = measure(corner);
-        const double error = std::max(budget_, std::min(fine.rel_error, coarse.rel_error));
-        matters = matters || std::abs(fine.rel_error - coarse.rel_error) > irrelevant * error ||
-                  rms_between(fine, coarse) > hidden * budget_;
-      }
-      if (matters)
-        before = value;
-      else
-        std::erase_if(kept_, [&](const SettingPoint& point) { return point[axis] == value; });
-    }
-  }
-
-  /// Of the settings of the first `resolutions` that would be cheaper than what was found, the cheapest whose predicted
-  /// error is at most `allowed` times the budget.
-  std::optional<SettingPoint> cheapest_promising(double allowed, size_t resolutions) const {
-    std::optional<SettingPoint> found = best_;
-    for (const SettingPoint& point : kept_)
-      if (point[resolution_axis] < resolutions && !measured(point) &&
-          (!found || oracle_.cost(point) < oracle_.cost(*found)) && predict(point) <= allowed * budget_)
-        found = point;
-    return found == best_ ? std::nullopt : found;
-  }
-
-  /// Measures, at the next finer resolution, the setting that promises most. @returns false where there is none, or
-  /// where the least error would not come near the budget if each further resolution won as much as the last did
-  bool climb() {
-    const size_t next = climbed_.size(), all = space_.size(resolution_axis);
-    if (next == all) return false;
-    const auto further = static_cast<double>(all - next);
-    if (next > 1 && climbed_.back() * std::pow(climbed_.back() / climbed_[next - 2], further) > hope * budget_)
-      return false;
-    std::optional<SettingPoint> probe;
-    for (const SettingPoint& point : kept_)
-      if (point[resolution_axis] == next && (!probe || predict(point) < predict(*probe))) probe = point;
-    measure(*probe);
-    return true;
-  }
-
-  /// The setting, and before it those of fewer cones: where a volume is there, an image costs little.
-  void measure_volume(const SettingPoint& wanted) {
-    SettingPoint point = wanted;
-    for (point[cone_axis] = 0; point[cone_axis] <= wanted[cone_axis]; ++point[cone_axis])
-      if ((point == wanted || predict(point) <= volume_slack * budget_) && measure(point).rel_error <= budget_) return;
-  }
-
-  /// Of what was measured at the finest resolution up to that of `point`, above the coarsest, the setting that is the
-  /// most like it: light that bounces, and how it is stored, change images more than cones do.
-  const PlanTrial* most_similar(const SettingPoint& point) const {
-    constexpr std::array<double, setting_axes> weight = {1e3, 4.0, 3.0, 1.0, 2.0};
-    const PlanTrial* found = nullptr;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const PlanTrial& other : result_.trials) {
-      if (other.point[resolution_axis] == 0 || other.point[resolution_axis] > point[resolution_axis]) continue;
-      double distance = 0.0;
-      for (size_t a = 0; a < setting_axes; ++a)
-        distance += weight[a] * std::abs(double(other.point[a]) - double(point[a]));
-      if (distance < nearest) nearest = distance, found = &other;
-    }
-    return found;
-  }
-
-  /// The error that a setting will have; of one that was measured, the error that it has.
-  double predict(const SettingPoint& point) const {
-    if (measured(point)) return trial(point).rel_error;
-    const auto coarse = [&](SettingPoint p) -> const PlanTrial& {
-      p[resolution_axis] = 0;
-      return trial(p);
-    };
-    const PlanTrial& own = coarse(point);
-    const PlanTrial* fine = most_similar(point);
-    if (!fine) return own.rel_error;
-    const PlanTrial& its = coarse(fine->point);
-    double square = 0.0;
-    for (size_t i = 0; i < own.difference.size(); ++i) {
-      const double d = own.difference[i] + fine->difference[i] - its.difference[i];
-      square += d * d;
-    }
-    return std::sqrt(std::max(0.0, square / static_cast<double>(own.difference.size()) - oracle_.noise));
-  }
-
-  /// Step 3. A step goes to the next value that was not dropped.
-  void look_beside(const PlanTrial& best) {
-    std::vector<SettingPoint> down, up;
-    for (size_t axis = 0; axis < setting_axes; ++axis) {
-      std::optional<SettingPoint> below, above;
-      for (const SettingPoint& point : kept_) {
-        SettingPoint moved = best.point;
-        moved[axis] = point[axis];
-        if (moved != point) continue;
-        if (point[axis] < best.point[axis] && (!below || point[axis] > (*below)[axis])) below = point;
-        if (point[axis] > best.point[axis] && (!above || point[axis] < (*above)[axis])) above = point;
-      }
-      if (below && oracle_.cost(*below) < oracle_.cost(best.point)) down.push_back(*below);
-      if (above) up.push_back(*above);
-    }
-    const auto by = [](auto value) { return [=](const auto& a, const auto& b) { return value(a) < value(b); }; };
-    const auto predicted = [this](const SettingPoint& p) { return predict(p); };
-    if (!down.empty()) result_.cheaper = measure(*std::min_element(down.begin(), down.end(), by(predicted)));
-    std::sort(up.begin(), up.end(), by(oracle_.cost));
-    for (const SettingPoint& point : up)
-      if (predict(point) < best.rel_error && measure(point).rel_error < best.rel_error) {
-        result_.better = trial(point);
-        return;
-      }
+  void learn(const SettingPoint& point, const ConeTraceResult& result, const StageSeconds& ran) {
+    cost_.learn(settings(point), result, small_pixels_, measures_times_ ? ran : StageSeconds{});
+    const StageSeconds seconds = cost_.predict(settings(point), small_pixels_);
+    for (const auto stage : {&StageSeconds::voxelize, &StageSeconds::shade, &StageSeconds::bounce,
+                             &StageSeconds::prepare, &StageSeconds::cone_trace})
+      if (ran.*stage > 0.0) modelled_ += seconds.*stage;
   }
 
   const SettingSpace& space_;
-  double budget_;
-  const PlanOracle& oracle_;
-  std::vector<SettingPoint> kept_;
-  std::map<SettingPoint, size_t> index_;  // of trials
-  std::vector<double> climbed_;           // least errors up to each resolution, as far as any was measured
-  std::optional<SettingPoint> best_;
-  PlanSearch result_;
+  const Settings& base_;
+  size_t full_pixels_, small_pixels_;
+  bool measures_times_;
+  Progress progress_;
+  ConeRunner runner_;
+  CostModel cost_;
+  const Truth& truth_;
+  double mean_;
+  std::map<SettingPoint, size_t> bytes_;
+  double modelled_ = 0.0;  // seconds that all of it would have taken by the rates that were given
 };
 
-bool has_specular(const Scene& scene) {
-  const Materials materials(scene);
-  for (uint32_t m = 0; m < scene.materials.size(); ++m) {
-    const MaterialPoint* constant = materials.constant(m);
-    if (!constant || constant->reflectance.has_specular()) return true;
+Table trial_table(const PlanSearch& search, const Workbench& bench) {
+  Table table{"plan_trials", "What was measured, in this order; times are predicted for the full size",
+              setting_columns()};
+  table.columns.insert(table.columns.end(),
+                       {{"rel_error", ""}, {"rel_error_stderr", ""}, {"nonfinite", "pixels"}, {"time", "s"}});
+  for (const PlanTrial& trial : search.trials) {
+    std::vector<Cell> row = setting_cells(bench.settings(trial.point));
+    row.insert(row.end(), {trial.rel_error, trial.rel_error_stderr, double(trial.nonfinite), bench.cost(trial.point)});
+    table.add(std::move(row));
   }
-  return false;
+  return table;
+}
+
+std::vector<std::string> not_finite(const PlanSearch& search, const Truth& truth) {
+  std::vector<std::string> sentences;
+  if (!truth.missing().empty()) sentences.push_back(truth.missing());
+  size_t settings = 0, most = 0;
+  for (const PlanTrial& trial : search.trials) settings += trial.nonfinite > 0, most = std::max(most, trial.nonfinite);
+  if (settings > 0)
+    sentences.push_back(
+        fmt::format("images of {} of {} settings have pixels that are NaN or infinite, up to {}: they "
+                    "have no error, and are within no budget",
+                    settings, search.trials.size(), most));
+  return sentences;
+}
+
+/// Every leaf of `json` that differs from the same leaf of `from`.
+nlohmann::json difference(const nlohmann::json& json, const nlohmann::json& from) {
+  nlohmann::json result = nlohmann::json::object();
+  for (const auto& [key, value] : json.items()) {
+    if (value == from.at(key)) continue;
+    result[key] = value.is_object() ? difference(value, from.at(key)) : value;
+  }
+  return result;
 }
 
 }  // namespace
 
-PlanSearch search_plan(const SettingSpace& space, double budget, const PlanOracle& oracle) {
-  return Search(space, budget, oracle).run();
+Plan make_plan(const Scene& scene, const Caster& caster, const View& view, const Settings& base,
+               const PlanOptions& options, const Progress& progress) {
+  Plan plan;
+  const View small = small_view(view, options.width);
+  PathOptions path;
+  path.spp = options.reference_spp;
+  const Truth truth = trace_truth(scene, caster, small, path, progress);
+  plan.indirect = truth.indirect;
+  plan.reference_seconds = truth.seconds;
+
+  SettingSpace space = options.space;
+  // Indirect light that paths found is proof that something is seen; without it (other light is compared) rays are.
+  const bool sees = truth.indirect || view_sees_surfaces(scene, caster, small);
+  plan.dropped = drop_unused(space, scene, sees, view.background);
+  Workbench bench(scene, caster, view, small, base, options, space, truth, progress);
+
+  const PlanSearch search =
+      options.search(space, options.budget,
+                     {[&](const SettingPoint& point) { return bench.measure(point); },
+                      [&](const SettingPoint& point) { return bench.cost(point); }, bench.noise()});
+  // From here on nothing is measured, and so costs are as the search left them.
+  const auto planned = [&](const std::optional<PlanTrial>& trial) {
+    return trial ? std::optional(bench.planned(*trial)) : std::nullopt;
+  };
+  plan.closest = bench.planned(*search.closest);
+  plan.best = planned(search.best);
+  plan.cheaper = planned(search.cheaper);
+  plan.better = planned(search.better);
+  plan.not_finite = not_finite(search, truth);
+  plan.trials = trial_table(search, bench);
+  plan.seconds = bench.spent();
+  return plan;
 }
 
-std::vector<std::string> drop_unused(SettingSpace& space, const Scene& scene, const Visibility& visibility,
-                                     const glm::vec3& background) {
-  std::vector<std::string> dropped;
-  if (!has_specular(scene)) dropped.emplace_back("no surface is specular: no specular cones are traced");
-  if (!scene.has_emission()) dropped.emplace_back("no surface emits: there is no volume of emission");
-  if (visibility.hit_share > 0.0) return dropped;
-  space.bounces = {0};
-  space.cones.resize(1);
-  space.steps.resize(1);
-  dropped.emplace_back(
-      background == glm::vec3(0.0f)
-          ? "no surface sees another: no bounces, and the fewest cones, which find nothing"
-          : "no surface sees another: no bounces, and the fewest cones, which see the background alone");
-  return dropped;
+nlohmann::json config(const Settings& settings) {
+  nlohmann::json result = difference(to_json(settings), to_json(profile(settings.profile)));
+  result["profile"] = settings.profile;
+  return result;
+}
+
+std::string assignments(const Settings& settings) {
+  nlohmann::json differing = config(settings);
+  differing.erase("profile");
+  const nlohmann::json flat = differing.flatten();
+  std::string text = "--profile " + settings.profile;
+  for (const auto& [pointer, value] : flat.items()) {
+    std::string key = pointer.substr(1);
+    std::replace(key.begin(), key.end(), '/', '.');
+    text += " --set " + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text;
 }
 
 }  // namespace voxref

@@ -1,56 +1,55 @@
 #pragma once
-#include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "study/cost_model.h"
-#include "study/setting_space.h"
+#include "study/plan_search.h"
+#include "study/table.h"
 
 namespace voxref {
 
-/// What was measured of a setting.
-struct PlanTrial {
-  SettingPoint point{};
-  double rel_error = 0, rel_error_stderr = 0;
-  std::vector<double> difference{};  ///< from the truth per pixel, signed, over the truth's mean
+struct PlanOptions {
+  /// The most that rel_error may be: the estimate itself, which is as likely too high as too low; its standard error
+  /// stands beside it.
+  double budget = 0.2;
+  int width = 48;           ///< pixels of the images that are measured
+  int reference_spp = 512;  ///< of the path-traced image that they are held against
+  SettingSpace space;       ///< what is searched; an axis of one value is fixed
+  PlanSearch (*search)(const SettingSpace&, double budget, const PlanOracle&) = search_plan;
+  /// How fast this machine is, for decisions that do not depend on its clock; none: learned from the runs.
+  std::optional<StageRates> rates;
 };
 
-/// What the search needs to know of the scene.
-struct PlanOracle {
-  std::function<PlanTrial(const SettingPoint&)> measure;  ///< expensive
-  std::function<double(const SettingPoint&)> cost;        ///< seconds at full size; cheap
-  double noise = 0;                                       ///< mean variance of `difference`, which rel_error leaves out
+/// A setting with its evidence, at the size that was asked for.
+struct PlannedSetting {
+  Settings settings;
+  double rel_error = 0, rel_error_stderr = 0;  ///< measured at small size; NaN where the image is not finite
+  size_t nonfinite = 0;                        ///< pixels that are NaN or infinite, at small size
+  double seconds = 0;                          ///< predicted
+  size_t bytes = 0;                            ///< of the volumes and the image; the volumes are measured
 };
 
-struct PlanSearch {
-  std::optional<PlanTrial> best;     ///< the cheapest within the budget; none: no setting reaches it
-  std::optional<PlanTrial> closest;  ///< the most accurate one that was measured
-  std::optional<PlanTrial> cheaper;  ///< one step down from the best along one axis: of those that cost less, the one
-                                     ///< with the least predicted error
-  std::optional<PlanTrial> better;   ///< one step up along one axis: the cheapest that is more accurate
-  std::vector<PlanTrial> trials;     ///< in the order in which they were measured
+struct Plan {
+  std::optional<PlannedSetting> best;             ///< none: nothing reaches the budget
+  PlannedSetting closest;                         ///< the most accurate that was measured
+  std::optional<PlannedSetting> cheaper, better;  ///< the next steps, see PlanSearch; none where there is none
+  std::vector<std::string> dropped;               ///< what the scene does not use
+  std::vector<std::string> not_finite;            ///< what was NaN or infinite, one sentence each
+  bool indirect = false;                          ///< whether errors are of the indirect light alone
+  Table trials;                                   ///< all that was measured, in that order
+  double seconds = 0;            ///< that the measurements took, each stage as often as it ran; by `rates` where given
+  double reference_seconds = 0;  ///< that the path-traced image took
 };
 
-/// Finds the cheapest setting whose error is at most `budget` without measuring most of the space. Errors make up for
-/// one another (bytes clamp light that wide cones have too much of; a bounce that is missing does too), so that no
-/// parameter may be judged alone, and errors do not add up. Differences of images do, with their signs:
-///
-/// 1. At the coarsest resolution, where a volume costs least, values of storage and step that change the error by less
-///    than a 25th and the image by less than half the budget, both of the cheapest setting and of the finest, are
-///    dropped, and all that is left is measured.
-/// 2. Any other setting is predicted: its image is that at the coarsest resolution plus what its resolution changed in
-///    the image of the nearest setting that was measured at both. The cheapest that promises to be within 1.1 times the
-///    budget is measured, with those of fewer cones in the same volume up to 1.3 times, and improves the predictions;
-///    until none is left that would be cheaper than what was found. Where nothing promises or was found, resolutions
-///    that were reached are searched up to 1.2 times the budget, and then the most promising setting of the next finer
-///    one is measured, unless errors fall too slowly to come near the budget.
-/// 3. The steps next to the best are measured: `cheaper` and `better`.
-PlanSearch search_plan(const SettingSpace& space, double budget, const PlanOracle& oracle);
+/// Plans for one view of a scene. @param view the full size @param base where the other parameters come from
+Plan make_plan(const Scene& scene, const Caster& caster, const View& view, const Settings& base,
+               const PlanOptions& options, const Progress& progress = {});
 
-/// Takes away what the scene cannot use, and says so in one line each: the bounces where no surface sees another, and
-/// then all but the fewest cones.
-std::vector<std::string> drop_unused(SettingSpace& space, const Scene& scene, const Visibility& visibility,
-                                     const glm::vec3& background);
+/// The parameters in which `settings` differ from the profile that they start from: what `cone --config` reads.
+nlohmann::json config(const Settings& settings);
+/// The same as flags of `cone`: --set a=1 --set b=2
+std::string assignments(const Settings& settings);
 
 }  // namespace voxref

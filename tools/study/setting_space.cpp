@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace voxref {
 
@@ -17,6 +18,32 @@ std::string storage_word(const Settings& settings) { return to_json(settings)["s
 
 size_t SettingSpace::size(size_t axis) const {
   return std::array{resolutions.size(), bounces.size(), storages.size(), steps.size(), cones.size()}.at(axis);
+}
+
+std::array<const char*, setting_axes> axis_parameters() {
+  return {"grid.resolution", "bounce.count", "storage", "cone.step", "cone.diffuse"};
+}
+
+void fix(SettingSpace& space, size_t axis, const Settings& settings) {
+  switch (axis) {
+    case resolution_axis:
+      space.resolutions = {settings.grid.resolution};
+      return;
+    case bounce_axis:
+      space.bounces = {settings.bounce.count};
+      return;
+    case storage_axis:
+      space.storages = {settings.storage};
+      return;
+    case step_axis:
+      space.steps = {settings.render.cone.step};
+      return;
+    case cone_axis:
+      space.cones = {settings.render.cone.diffuse};
+      return;
+    default:
+      throw std::out_of_range("no such axis");
+  }
 }
 
 std::vector<SettingPoint> all_points(const SettingSpace& space) {

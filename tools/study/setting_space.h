@@ -26,6 +26,11 @@ enum SettingAxis : size_t { resolution_axis, bounce_axis, storage_axis, step_axi
 /// A setting of the space: an index per axis.
 using SettingPoint = std::array<size_t, setting_axes>;
 
+/// The axes' parameters as Settings name them: "grid.resolution".
+std::array<const char*, setting_axes> axis_parameters();
+/// Leaves an axis the one value that `settings` have.
+void fix(SettingSpace& space, size_t axis, const Settings& settings);
+
 /// Every setting, the last axis fastest.
 std::vector<SettingPoint> all_points(const SettingSpace& space);
 

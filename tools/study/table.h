@@ -6,7 +6,7 @@
 
 namespace voxref {
 
-/// What a column holds. An error bar is a column of its own, named after the one that it belongs to: "bias_error".
+/// What a column holds. An error bar is a column of its own, named after the one that it belongs to: "bias_stderr".
 struct Column {
   std::string name;  ///< lower_case
   std::string unit;  ///< empty: none

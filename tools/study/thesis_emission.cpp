@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/path.h"
 #include "study/curves.h"
 #include "study/deviation.h"
 #include "study/study_scenes.h"
 #include "study/thesis_scenes.h"
 #include "study/thesis_sections.h"
+#include "study/truth.h"
 
 namespace voxref {
 
@@ -64,7 +64,7 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
       const View view = sized(scene.view, sizes.quality_width / 2);
       PathOptions path;
       path.spp = sizes.spp;
-      const Image truth = reflected(path_trace(scene.scene, caster, view, path, progress).image);
+      const Image truth = reflected(trace_paths(scene.scene, caster, view, path, progress).image);
       Series ratios{scene.name, ChartStyle::line_points}, errors = ratios;
       for (const int resolution : sizes.resolutions) {
         progress.check();

@@ -1,15 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "error.h"
 #include "file.h"
 #include "inputs.h"
+#include "json_members.h"
 #include "outputs.h"
 #include "parallel.h"
 #include "parse.h"
-#include "study/planner.h"
+#include "study/plan.h"
 #include "summary.h"
 #include "terminal.h"
 
@@ -27,9 +29,23 @@ struct Options {
   std::string output;
 };
 
+/// Leaves every searched parameter that --set or --config name the value that it has there.
+void fix_given(SettingSpace& space, const SettingsOptions& options, const Settings& settings) {
+  nlohmann::json given = options.config.empty() ? nlohmann::json::object() : read_json(options.config);
+  for (const std::string& assignment : options.assignments) given[assignment.substr(0, assignment.find('='))] = true;
+  for (size_t axis = 0; axis < setting_axes; ++axis) {
+    std::string key = axis_parameters().at(axis);
+    const bool assigned = given.contains(key);
+    std::replace(key.begin(), key.end(), '.', '/');
+    if (assigned || given.contains(nlohmann::json::json_pointer("/" + key))) fix(space, axis, settings);
+  }
+}
+
 std::string sentence(const PlannedSetting& setting) {
-  return fmt::format("error {:.1f} % +- {:.1f}, about {:.2g} s and {}: {}", 100 * setting.rel_error,
-                     100 * setting.rel_error_stderr, setting.seconds, byte_count(setting.bytes),
+  const std::string error = setting.nonfinite > 0 ? fmt::format("no error, {} pixels are not finite", setting.nonfinite)
+                                                  : fmt::format("error {:.1f} % +- {:.1f}", 100 * setting.rel_error,
+                                                                100 * setting.rel_error_stderr);
+  return fmt::format("{}, about {:.2g} s and {}: {}", error, setting.seconds, byte_count(setting.bytes),
                      assignments(setting.settings));
 }
 
@@ -38,6 +54,7 @@ nlohmann::json describe(const std::optional<PlannedSetting>& setting) {
   return {{"settings", config(setting->settings)},
           {"rel_error", setting->rel_error},
           {"rel_error_stderr", setting->rel_error_stderr},
+          {"nonfinite", setting->nonfinite},
           {"seconds", setting->seconds},
           {"bytes", setting->bytes},
           {"assignments", assignments(setting->settings)}};
@@ -45,6 +62,7 @@ nlohmann::json describe(const std::optional<PlannedSetting>& setting) {
 
 void say(Terminal& terminal, const Plan& plan, const Options& options) {
   for (const std::string& line : plan.dropped) terminal.say("unused    " + line);
+  for (const std::string& line : plan.not_finite) terminal.warn("voxref: warning: " + line);
   if (plan.best)
     terminal.say("plan      " + sentence(*plan.best));
   else
@@ -52,15 +70,18 @@ void say(Terminal& terminal, const Plan& plan, const Options& options) {
   if (!plan.best) terminal.say("closest   " + sentence(plan.closest));
   if (plan.cheaper) terminal.say("cheaper   " + sentence(*plan.cheaper));
   if (plan.better) terminal.say("better    " + sentence(*plan.better));
-  terminal.say(fmt::format("evidence  {} settings measured at {} pixels' width, {:.1f} s; error of the {} light",
-                           plan.trials.rows.size(), options.plan.width, plan.seconds,
-                           plan.indirect ? "indirect" : "whole"));
+  terminal.say(
+      fmt::format("evidence  {} settings measured at {} pixels' width, {:.1f} s, and {:.1f} s of path tracing; error "
+                  "of the {} light",
+                  plan.trials.rows.size(), options.plan.width, plan.seconds, plan.reference_seconds,
+                  plan.indirect ? "indirect" : "whole"));
 }
 
 int run_plan(Options& options) {
   if (!options.budget) throw Error("--budget", "needed, but not given");
   options.plan.budget = *options.budget;
   const Settings base = make_settings(options.settings);
+  fix_given(options.plan.space, options.settings, base);
   if (!options.output.empty()) {
     require_no_clash({options.scene.file, options.settings.config, {options.output}, {}});
     require_writable(options.output);
@@ -70,9 +91,10 @@ int run_plan(Options& options) {
   const OpenedScene opened(options.scene, options.view, cone_bytes_per_pixel, terminal);
   const auto& [scene, view, caster] = opened;
   const Plan plan = make_plan(scene, caster, view, base, options.plan, terminal.progress());
-  if (!options.output.empty() && plan.best) {
-    write_text(options.output, config(plan.best->settings).dump(2) + "\n");
-    terminal.say("written   " + options.output);
+  if (!options.output.empty()) {
+    const PlannedSetting& written = plan.best ? *plan.best : plan.closest;
+    write_text(options.output, config(written.settings).dump(2) + "\n");
+    terminal.say("written   " + options.output + (plan.best ? "" : ", the closest"));
   }
   say(terminal, plan, options);
   terminal.result({{"budget", *options.budget},
@@ -82,9 +104,11 @@ int run_plan(Options& options) {
                    {"cheaper", describe(plan.cheaper)},
                    {"better", describe(plan.better)},
                    {"unused", plan.dropped},
+                   {"not_finite", plan.not_finite},
                    {"of", plan.indirect ? "indirect" : "rgb"},
                    {"size", {view.width, view.height}},
                    {"seconds", plan.seconds},
+                   {"reference_seconds", plan.reference_seconds},
                    {"trials", to_json(plan.trials)}});
   return plan.best ? exit_done : exit_outside_limits;
 }
@@ -103,10 +127,12 @@ void add_plan(CLI::App& program, Run& run) {
   add_view_options(*command, options->view);
   add_common_options(*command, options->common);
   command->footer(
-      "Chosen are grid.resolution, bounce.count, cone.diffuse, cone.step and storage; the others are as given. Errors "
-      "are\n"
-      "measured on a small image against the path tracer; time and memory are predicted for --size. Exits with 1, and\n"
-      "names the closest, when no setting reaches the budget. Ctrl-C writes nothing and exits with 2.\n\n"
+      "Chosen are grid.resolution, bounce.count, cone.diffuse, cone.step and storage, but for those that --set or\n"
+      "--config give; the others are as given. Errors are measured on a small image against the path tracer, and held\n"
+      "against the budget as measured, whatever their error bars; time and memory are predicted for --size. Exits with "
+      "1,\n"
+      "and names and writes the closest, when no setting reaches the budget. Ctrl-C writes nothing and exits with "
+      "2.\n\n"
       "Example:\n  voxref plan scenes/cornell_box_point.glb --budget 0.3 -o plan.json\n"
       "  voxref cone scenes/cornell_box_point.glb -o cone.exr --config plan.json");
   on_run(command, run, [options] { return run_plan(*options); });
