@@ -80,8 +80,7 @@ std::vector<std::vector<double>> time_settings(const Setup& setup, const ParetoG
 
 Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& progress) {
   Table table{"pareto_" + setup.scene.name + "_cones",
-              fmt::format("Cone tracer: every setting with its error and the seconds of all its stages"),
-              setting_columns()};
+              "Cone tracer: every setting with its error and the seconds of all its stages", setting_columns()};
   for (const Column& column : measured_columns()) table.columns.push_back(column);
   table.columns.insert(
       table.columns.end(),
