@@ -152,4 +152,9 @@ TEST_CASE("A stage's rate is that of runs alike in what the stage depends on", "
   learn(with(256, 1.0f, Storage::float32), 6.0);
   CHECK(model.predict(with(256, 0.5f, Storage::float32), 100).prepare == Approx(2.0 * there.prepare));
   CHECK(model.predict(with(256, 0.5f, Storage::unorm8), 100).prepare == Approx(there.prepare));
+  // So a busy moment is outvoted by runs of any step and storage.
+  for (const float step : {1.0f, 2.0f}) learn(with(128, step, Storage::unorm8), 1.0);
+  learn(with(128, 0.5f, Storage::float32), 50.0);
+  const Settings hit = with(128, 0.5f, Storage::float32);
+  CHECK(model.predict(hit, 100).voxelize == Approx(run(hit).seconds.voxelize));
 }

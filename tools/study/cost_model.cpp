@@ -108,7 +108,8 @@ CostModel::Work CostModel::work(const Settings& settings, size_t pixels) const {
 }
 
 double CostModel::rate(Stage stage, const Settings& wanted) const {
-  // What the stage's time per unit depends on; of an image cones and step too, since each pixel costs something itself.
+  // What the stage's time per unit depends on, most of all first: of an image the cones, since each pixel costs
+  // something itself, of a volume its resolution.
   const bool image = stage == &StageRates::pixel_look_up, marches = image || stage == &StageRates::look_up;
   const bool stores = stage != &StageRates::voxelize;
   const auto ratio = [](int a, int b) { return std::abs(std::log(double(a) / b)); };

@@ -226,7 +226,7 @@ std::string findings(const Table& cones, const Table& paths, std::span<const siz
       "and 95 % confidence limits. Time: of all stages, booked to every setting that uses them, for the path tracer of "
       "its render loop; the median, and the least and the greatest measured on this machine, each setting once in a "
       "round (column rounds). Frontier: no other setting is both as quick and as accurate.\n\n";
-  if (frontier.empty()) return text + "No setting has an error.";
+  if (frontier.empty()) return text + "No setting has an image that is finite everywhere, and so an error.";
   const size_t best = frontier.back();
   const double error = cones.number(best, "rel_error");
   text += fmt::format("The most accurate of {} settings is {:.1f} % off in {:.3g} s.", cones.rows.size(), 100.0 * error,
