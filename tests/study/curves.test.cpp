@@ -84,3 +84,9 @@ TEST_CASE("The ball's light in closed form is the integral over the hemisphere",
     CHECK(double(met) / (rings * sectors) == Approx(ball_light(offset)).epsilon(0.005));
   }
 }
+
+TEST_CASE("The value of a series where it has no point is no number", "[stability]") {
+  const Series series{"name", ChartStyle::line, {chart_point(1.0, 2.0), chart_point(3.0, 4.0)}};
+  CHECK(value_at(series, 3.0) == 4.0);
+  CHECK(std::isnan(value_at(series, 2.0)));
+}

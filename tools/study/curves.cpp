@@ -40,6 +40,12 @@ Series level_line(double y, double from, double to, const std::string& title) {
   return {title, ChartStyle::dashes, {chart_point(from, y), chart_point(to, y)}};
 }
 
+double value_at(const Series& series, double x) {
+  for (const ChartPoint& point : series.points)
+    if (point.x == x) return point.y;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 std::vector<double> detrended(std::span<const double> values) {
   const double average = mean(values), middle = 0.5 * (static_cast<double>(values.size()) - 1.0);
   double slope = 0.0, squares = 0.0;

@@ -23,6 +23,9 @@ Series theory_curve(const Table& table, const std::string& x, const std::string&
 /// A dashed horizontal line.
 Series level_line(double y, double from, double to, const std::string& title);
 
+/// NaN where the series has no point at x.
+double value_at(const Series& series, double x);
+
 /// What is left of evenly spaced values after their best straight line is taken off, over their mean.
 std::vector<double> detrended(std::span<const double> values);
 

@@ -35,6 +35,7 @@ Failure contact_gap();         ///< self-lighting and what is lost near a contac
 Failure step_dependence();     ///< transmittance of a medium by the step's length, raw and as extinction
 Failure step_bands();          ///< of a wall that a cone comes nearer to, by the step's length
 Failure cone_bands();          ///< of a ball's light on a floor, by the number of cones
+Failure emitter_growth();      ///< by the voxels that stand for it
 Failure flicker();             ///< of what an object sends that moves by fractions of a voxel, and its spectrum
 Failure camera_flicker();      ///< of a floor's light along a path of the gathering point
 Failure rotation();            ///< a closed room that is turned against the grid

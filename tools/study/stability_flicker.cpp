@@ -1,6 +1,8 @@
 // What repeats with the voxel when something moves.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "compare/statistics.h"
 #include "study/curves.h"
 #include "study/stability.h"
@@ -20,13 +22,14 @@ using Runs = std::vector<std::pair<int, std::vector<double>>>;
 float shift_of(size_t sample, float voxel) { return voxel * float(sample * periods) / float(samples); }
 
 Failure flicker_of(const std::string& name, const std::string& title, const std::string& text, const Runs& runs) {
-  Failure failure{title,
-                  text +
-                      " Shown is the light over that in closed form, so that what varies is the method's; the "
-                      "spectrum is of what is left when its straight trend is taken off.",
-                  {name,
-                   "Light on the floor along the way, over the true light",
-                   {{"cones", ""}, {"shift", "voxels"}, {"ratio", ""}}}};
+  Failure failure{
+      title,
+      text +
+          " Shown is the light over that in closed form, so that what varies is the method's, over its mean; the "
+          "spectrum is of what is left when its straight trend is taken off.",
+      {name,
+       "Light on the floor along the way, over the true light",
+       {{"cones", ""}, {"shift", "voxels"}, {"ratio", ""}}}};
   Chart way{name, title, {"shift / voxels"}, {"gathered / true light, over its mean"}};
   Chart spectrum{name + "_spectrum",
                  title + ": spectrum",
@@ -48,6 +51,9 @@ Failure flicker_of(const std::string& name, const std::string& title, const std:
                                   "peak to peak of the light less its straight trend, over its mean"});
     failure.thresholds.push_back({fmt::format("{}_{}_cones_per_voxel", name, cones), amplitudes[0], "",
                                   "amplitude that repeats with the voxel, over the mean"});
+    failure.thresholds.push_back({fmt::format("{}_{}_cones_light", name, cones), std::abs(mean(ratios) - 1.0), "",
+                                  "how far that mean is off the true light, relative"});
+    failure.text += fmt::format(" With {} cones it is {:.2f} times the true light in the mean.", cones, mean(ratios));
   }
   failure.charts = {std::move(way), std::move(spectrum)};
   return failure;

@@ -119,9 +119,11 @@ Failure opposite_normals() {
                              theory_curve(failure.table, "thickness", "dark_theory", "theory, dark side", "dark side"),
                              curve(failure.table, "thickness", "lit_published", "lit side, published profile"),
                              curve(failure.table, "thickness", "dark_published", "dark side, published profile")}});
+  failure.charts.back().marks = {{breaks_at(from_thick, weber_low), "1 % and less"}};
   failure.thresholds = {
       {"opposite_dark", from_thick.back().y, "", "what the dark side of the thinnest slab sends, over the lit one's"},
-      {"opposite_break", breaks_at(from_thick, 0.01), "voxels", "thickness below which the dark side sends over 1 %"},
+      {"opposite_break", breaks_at(from_thick, weber_low), "voxels",
+       "thickness below which the dark side sends over 1 %"},
       {"opposite_theory_gap", off, "", "most that either side or the share of shared voxels is off theory"}};
   return failure;
 }

@@ -4,8 +4,10 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
+#include <limits>
 #include <numbers>
 
+#include "compare/measured.h"
 #include "error.h"
 #include "image/image.h"
 #include "make_scenes/assemble.h"
@@ -70,12 +72,14 @@ void add_triangle(Scene& scene, const glm::vec3& a, const glm::vec3& b, const gl
   add_object(scene, "triangle", mesh, material);
 }
 
-Medium glowing_medium(const Scene& scene, const GridOptions& grid) {
+Pyramid glowing_pyramid(const Scene& scene, const GridOptions& grid) {
   const SurfaceGrid surfaces = voxelize(scene, fit_grid(scene.bounds(), grid), {});
   std::vector<glm::vec3> radiance = surfaces.emission;
   radiance.resize(surfaces.size());
-  return make_medium(mipmap(surfaces, radiance, {}));
+  return mipmap(surfaces, radiance, {});
 }
+
+Medium glowing_medium(const Scene& scene, const GridOptions& grid) { return make_medium(glowing_pyramid(scene, grid)); }
 
 double gathered(const Medium& medium, const glm::vec3& position, const glm::vec3& normal, int cones,
                 const ConeOptions& options) {
@@ -91,24 +95,28 @@ Settings small_settings(int resolution) {
   return settings;
 }
 
-ConeTraceResult trace(const Scene& scene, const Settings& settings, int width, size_t camera) {
+TryTrace::TryTrace(const Scene& scene, const Settings& settings, int width, size_t camera) : outcome("rendered") {
   View view;
   view.camera = scene.cameras.at(camera);
-  return cone_trace(scene, Caster(scene), sized(view, width), settings);
-}
-
-TryTrace::TryTrace(const Scene& scene, const Settings& settings, int width) : outcome("rendered") {
   try {
-    result = trace(scene, settings, width);
+    result = cone_trace(scene, Caster(scene), sized(view, width), settings);
   } catch (const Error& error) {
     outcome = std::string("refused: ") + error.what();
   }
 }
 
-double mean_luminance(const ConeTraceResult& result) { return double(luminance(result.mean)); }
+double TryTrace::mean() const {
+  if (!result || result->image.nonfinite > 0) return std::numeric_limits<double>::quiet_NaN();
+  return double(luminance(result->mean));
+}
+
+double TryTrace::mean_indirect() const {
+  if (std::isnan(mean())) return mean();
+  return measured_cone(result->image.image, true).mean();
+}
 
 double usual_box_mean() {
-  return mean_luminance(trace(cornell_box(CornellLight::point), small_settings(box_voxels), box_width));
+  return TryTrace(cornell_box(CornellLight::point), small_settings(box_voxels), box_width).mean();
 }
 
 glm::mat3 turn_about(const glm::vec3& axis, float degrees) {

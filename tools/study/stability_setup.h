@@ -36,6 +36,7 @@ void add_triangle(Scene& scene, const glm::vec3& a, const glm::vec3& b, const gl
                   uint32_t material);
 
 /// The volume of a scene whose voxels show their emission and nothing else.
+Pyramid glowing_pyramid(const Scene& scene, const GridOptions& grid);
 Medium glowing_medium(const Scene& scene, const GridOptions& grid);
 
 /// Mean radiance over the hemisphere, as luminance: irradiance / pi, gathered with `cones` cones.
@@ -45,17 +46,21 @@ double gathered(const Medium& medium, const glm::vec3& position, const glm::vec3
 /// Radiometric, without bounces at the voxels.
 Settings small_settings(int resolution);
 
-/// The whole pipeline, seen by one of the scene's cameras. @param width pixels
-ConeTraceResult trace(const Scene& scene, const Settings& settings, int width, size_t camera = 0);
-double mean_luminance(const ConeTraceResult& result);
-
-/// trace() of what may be refused, which then leaves no result.
+/// The whole pipeline, which may refuse: that leaves no result.
 struct TryTrace {
-  TryTrace(const Scene& scene, const Settings& settings, int width);
+  /// Seen by one of the scene's cameras. @param width pixels
+  TryTrace(const Scene& scene, const Settings& settings, int width, size_t camera = 0);
+  /// Luminance; NaN where there is no result, or a pixel of it is not finite.
+  double mean() const;
+  /// The same of the indirect light alone.
+  double mean_indirect() const;
 
   std::optional<ConeTraceResult> result;
   std::string outcome;  ///< "rendered", or "refused: why"
 };
+
+/// Weber's fraction of brightness is 1 to 2 %: below the one a change is not seen, above the other it is.
+inline constexpr double weber_low = 0.01, weber_high = 0.02;
 
 /// Of the Cornell box with a point light, 32 voxels, 16 pixels wide: what it shows where nothing is changed.
 inline constexpr int box_voxels = 32, box_width = 16;

@@ -78,9 +78,10 @@ Failure step_dependence() {
         curve(failure.table, "step", "raw", "raw opacity", ChartStyle::points),
         theory_curve(failure.table, "step", "raw_theory", "theory, raw, interpolated", "raw opacity"),
         curve(failure.table, "step", "whole_texels_theory", "theory, raw, whole texels", ChartStyle::dashes)}});
+  failure.charts.back().marks = {{breaks_at(errors, weber_low), "off by 0.01"}};
   failure.thresholds = {
       {"step_error", worst, "", "most that the transmittance is off 0.5, for steps up to a voxel and any offset"},
-      {"step_breaks", breaks_at(errors, 0.01), "voxels", "step from which it may be off by 0.01", Worse::smaller},
+      {"step_breaks", breaks_at(errors, weber_low), "voxels", "step from which it may be off by 0.01", Worse::smaller},
       {"step_theory_gap", off_theory, "", "most that the raw optical depth is off theory, relative"}};
   return failure;
 }
@@ -151,13 +152,13 @@ Failure step_bands() {
                      {"(largest - smallest) / mean", false, 0.0},
                      {extinction, raw}},
                     way};
-  const auto at_half =
-      std::find_if(extinction.points.begin(), extinction.points.end(), [](const ChartPoint& p) { return p.x == 0.5; });
-  constexpr double visible = 0.02;  // Weber's fraction of brightness is 1 to 2 %
-  failure.thresholds = {{"step_bands", at_half->y, "", "of a wall's radiance at the shipped step, over its mean"},
-                        {"step_bands_break", breaks_at(extinction.points, visible), "cone diameters",
+  failure.charts.front().marks = {{breaks_at(extinction.points, weber_high), "extinction: 2 %"},
+                                  {breaks_at(raw.points, weber_high), "raw: 2 %"}};
+  failure.thresholds = {{"step_bands", value_at(extinction, double(ConeOptions{}.step)), "",
+                         "of a wall's radiance at the shipped step, over its mean"},
+                        {"step_bands_break", breaks_at(extinction.points, weber_high), "cone diameters",
                          "step from which extinction shows bands of 2 %", Worse::smaller},
-                        {"step_bands_break_raw", breaks_at(raw.points, visible), "cone diameters",
+                        {"step_bands_break_raw", breaks_at(raw.points, weber_high), "cone diameters",
                          "step from which raw opacity shows bands of 2 %", Worse::smaller}};
   return failure;
 }
