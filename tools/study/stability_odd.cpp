@@ -6,10 +6,10 @@
 #include "make_scenes/assemble.h"
 #include "make_scenes/builders.h"
 #include "make_scenes/shapes.h"
-#include "reference/path.h"
 #include "study/stability.h"
 #include "study/stability_setup.h"
 #include "study/study_scenes.h"
+#include "study/truth.h"
 
 namespace voxref {
 
@@ -30,7 +30,7 @@ Estimate true_mean(const Scene& scene) {
   PathOptions options;
   options.spp = 256;
   options.max_depth = odd_bounces + 2;  // the last gather, and the direct light
-  const PathResult result = path_trace(scene, Caster(scene), sized(view, odd_width), options);
+  const PathResult result = trace_paths(scene, Caster(scene), sized(view, odd_width), options, {});
   return {double(luminance(result.mean)), double(luminance(result.mean_stderr))};
 }
 

@@ -15,12 +15,6 @@ namespace voxref {
 
 namespace {
 
-StudyScene own(const std::string& name, Scene scene) {
-  StudyScene result{name, std::move(scene), {}};
-  result.view.camera = result.scene.cameras.at(0);
-  return result;
-}
-
 constexpr std::array standpoints = {
     Standpoint{"sponza", {-12.0f, 3.0f, 0.0f}, {12.0f, 5.0f, 0.0f}, {0.0f, 5.0f, 0.0f}, 200.0f},
     Standpoint{"sibenik", {-15.0f, -11.0f, 0.0f}, {10.0f, -9.0f, 0.0f}, {-4.0f, -8.0f, 0.0f}, 150.0f},
@@ -29,9 +23,15 @@ constexpr std::array standpoints = {
 
 }  // namespace
 
-StudyScene cornell_point_scene() { return own("cornell_box_point", cornell_box(CornellLight::point)); }
-StudyScene light_box_scene() { return own("light_box", light_box()); }
-StudyScene plane_test_scene() { return own("plane_test", plane_test()); }
+StudyScene seen_by_first_camera(const std::string& name, Scene scene) {
+  StudyScene result{name, std::move(scene), {}};
+  result.view.camera = result.scene.cameras.at(0);
+  return result;
+}
+
+StudyScene cornell_point_scene() { return seen_by_first_camera("cornell_box_point", cornell_box(CornellLight::point)); }
+StudyScene light_box_scene() { return seen_by_first_camera("light_box", light_box()); }
+StudyScene plane_test_scene() { return seen_by_first_camera("plane_test", plane_test()); }
 
 const Standpoint& standpoint(const std::string& name) {
   const auto found =

@@ -5,6 +5,9 @@
 
 namespace voxref {
 
+/// A scene of that name, seen by the first of its cameras.
+StudyScene seen_by_first_camera(const std::string& name, Scene scene);
+
 /// Scenes that studies use when none are given. The project's own are made in memory, as `scenes/` holds them.
 StudyScene cornell_point_scene();
 StudyScene light_box_scene();

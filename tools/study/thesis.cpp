@@ -1,6 +1,5 @@
 #include <utility>
 
-#include "study/study_scenes.h"
 #include "study/thesis_scenes.h"
 #include "study/thesis_sections.h"
 
@@ -19,14 +18,12 @@ StudyResult thesis_study(const StudyRequest& request, const ThesisSizes& sizes) 
   light_scenes(scenes, ThesisLight::point);
   add(thesis_shadow_times(scenes, sizes, progress));
   add(thesis_apertures(sizes, progress));
-  const std::vector<StudyScene> others = {light_box_scene(), plane_test_scene()};
   std::vector<StudyScene> glowing = glowing_scenes(scenes);
-  scenes.insert(scenes.end(), others.begin(), others.end());
   add(thesis_quality(scenes, sizes, progress));
   add(thesis_specular(sizes, progress));
   scenes.clear();  // hundreds of megabytes
   add(thesis_emission(glowing, sizes, progress));
-  add(thesis_memory_use(std::move(memory), others, sizes, progress));
+  add(thesis_memory_use(memory, sizes));
   return result;
 }
 

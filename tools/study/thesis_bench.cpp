@@ -1,9 +1,13 @@
 #include "study/thesis_bench.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <utility>
 
+#include "error.h"
 #include "study/study_scenes.h"
 #include "voxel/mipmap.h"
 
@@ -20,8 +24,25 @@ double seconds_of(const Work& work) {
 }
 
 constexpr int two_pixels = 2;  // wide
+constexpr double published_pixels = 1280.0 * 720.0;
+
+double pixel_count(const View& view) { return double(view.width) * double(view.height); }
 
 }  // namespace
+
+View timed_view(View view, int width) {
+  const double pixels = 9.0 / 16.0 * double(width) * double(width);
+  view.height = std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / double(view.camera.aspect)))));
+  view.width = std::max(1, static_cast<int>(std::lround(pixels / view.height)));
+  return view;
+}
+
+Image finite_image(ConeTraceResult result, const std::string& scene) {
+  if (result.image.nonfinite > 0)
+    throw Error(scene, result.image.first_nonfinite,
+                fmt::format("the first of {} pixels that are not finite", result.image.nonfinite));
+  return std::move(result.image.image);
+}
 
 Settings thesis_settings(int resolution) {
   Settings settings = profile("villegas2016");
@@ -56,13 +77,17 @@ Timing PreparedScene::shading_timing(const Settings& settings) const {
 }
 
 Image PreparedScene::image(const Settings& settings, const LitVoxels& volume, int width) const {
-  return gather_image(scene_.scene, caster_, sized(scene_.view, width), settings, volume, progress_).image.image;
+  return finite_image(gather_image(scene_.scene, caster_, sized(scene_.view, width), settings, volume, progress_),
+                      scene_.name);
 }
 
 Timing PreparedScene::image_timing(const Settings& settings, const LitVoxels& volume, int width) const {
+  const auto seconds = [&](const View& view) {
+    return seconds_of([&] { gather_image(scene_.scene, caster_, view, settings, volume, progress_); });
+  };
   const auto round = [&] {
-    const double fixed = seconds_of([&] { image(settings, volume, two_pixels); });
-    return std::vector<double>{std::max(0.0, seconds_of([&] { image(settings, volume, width); }) - fixed)};
+    const double fixed = seconds(sized(scene_.view, two_pixels));
+    return std::vector<double>{std::max(0.0, seconds(timed_view(scene_.view, width)) - fixed)};
   };
   return repeated(round).front();
 }
@@ -95,13 +120,16 @@ StageTimings measure_stages(const StudyScene& scene, int resolution, int width, 
                     .pyramid;
     });
     result.bytes = predict_bytes(frame, settings).at("total");
+    result.voxels = frame.size();
     LitVoxels lit;
     lit.grid = grid;
     lit.volume = lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
-    const auto image = [&](int pixels) {
-      return seconds_of([&] { gather_image(scene.scene, caster, sized(scene.view, pixels), settings, lit, progress); });
+    const auto image = [&](const View& view) {
+      return seconds_of([&] { gather_image(scene.scene, caster, view, settings, lit, progress); });
     };
-    const double fixed_part = image(two_pixels), cones = std::max(0.0, image(width) - fixed_part);
+    const View view = timed_view(scene.view, width);
+    const double fixed_part = image(sized(scene.view, two_pixels)),
+                 cones = std::max(0.0, image(view) - fixed_part) * published_pixels / pixel_count(view);
     const double bounce_alone = std::max(0.0, both - second_mipmap);
     std::vector<double> seconds = {fixed_seconds, clear,        dynamic,       shade_seconds,
                                    first_mipmap,  bounce_alone, second_mipmap, cones};
@@ -121,14 +149,6 @@ StageTimings measure_stages(const StudyScene& scene, int resolution, int width, 
   result.cones = t[7];
   result.total = t[8];
   return result;
-}
-
-size_t volume_memory(const StudyScene& scene, int resolution, const Progress& progress) {
-  const Settings settings = thesis_settings(resolution);
-  return predict_bytes(
-             voxelize(scene.scene, fit_grid(scene.scene.bounds(), settings.grid), settings.voxelize, progress),
-             settings)
-      .at("total");
 }
 
 }  // namespace voxref

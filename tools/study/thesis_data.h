@@ -7,7 +7,8 @@ namespace voxref {
 
 // What Villegas 2016 measured, on an AMD R9 380; milliseconds unless said. What carries over are ratios between rows.
 
-inline constexpr double misprint = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double not_published = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double misprint = not_published;  // printed, but another column's
 
 /// Tables 4.3 and 4.4. In the rows of 128 voxels the totals repeat another column, and a time of the cones does.
 struct ThesisStages {

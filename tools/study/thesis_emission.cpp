@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "study/curves.h"
 #include "study/deviation.h"
@@ -39,57 +39,121 @@ double colorfulness(const Image& image) {
 
 }  // namespace
 
+namespace {
+
+/// Rows and series of one kind: what changes along a chart's axis.
+struct EmissionCurves {
+  Table table;
+  Chart light, error;
+
+  EmissionCurves(const std::string& name, const std::string& caption, const std::string& variable, const Axis& axis,
+                 const std::string& title)
+      : table{name,
+              caption,
+              {{"scene", ""},
+               {variable, ""},
+               {"mean_ratio", ""},
+               {"rel_error", ""},
+               {"rel_error_stderr", ""},
+               {"colorfulness", ""},
+               {"colorfulness_true", ""}}},
+        light{name, title + " against the path tracer", axis, {"cone traced / path traced mean", false, 0.0}},
+        error{name + "_error", "Error: " + title, axis, {"RMS error / path traced mean", false, 0.0}} {}
+
+  void begin(const std::string& scene) {
+    for (Chart* chart : {&light, &error}) chart->series.push_back({scene, ChartStyle::line_points});
+  }
+  void add(double x, const Image& cone, const Image& truth) {
+    const Deviation d = deviation(measured_cone(cone, false), measured_path(truth, false));
+    table.add({light.series.back().title, x, d.bias + 1.0, d.rel_error(), d.rel_error_stderr(), colorfulness(cone),
+               colorfulness(truth)});
+    light.series.back().points.push_back(chart_point(x, d.bias + 1.0));
+    error.series.back().points.push_back(chart_point(x, d.rel_error(), "", d.rel_error_stderr()));
+  }
+  void end(double first, double last) { light.series.push_back(level_line(1.0, first, last, "path tracer")); }
+};
+
+/// Whether each value of the last scene is below the one before by more than both standard errors.
+void add_falls(const Series& errors, std::vector<bool>& falls) {
+  for (size_t i = 1; i < errors.points.size(); ++i) {
+    const ChartPoint &before = errors.points[i - 1], &now = errors.points[i];
+    falls.push_back(now.y + now.error < before.y - before.error);
+  }
+}
+
+/// "1.5 to 2.1" of a column in the rows where another holds a number.
+std::string range(const Table& table, const std::string& column, const std::string& where, double number) {
+  std::vector<double> values;
+  for (size_t i = 0; i < table.rows.size(); ++i)
+    if (table.number(i, where) == number) values.push_back(table.number(i, column));
+  const Spread all = spread(std::move(values));
+  return fmt::format("{:.2f} to {:.2f}", all.least, all.greatest);
+}
+
+}  // namespace
+
 Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSizes& sizes, const Progress& progress) {
   return timed_section("Figures 4.33 to 4.35: emissive objects and no lamp", [&](Section& section) {
-    Table table{"thesis_emission",
-                "What emissive objects bring to their neighbours, against the path tracer",
-                {{"scene", ""},
-                 {"voxels", ""},
-                 {"mean_ratio", ""},
-                 {"rel_error", ""},
-                 {"rel_error_stderr", ""},
-                 {"colorfulness", ""},
-                 {"colorfulness_true", ""}}};
-    Chart light{"thesis_emission",
-                "Light of emissive objects, against the path tracer",
-                {"voxels along the longest side", true},
-                {"cone traced / path traced mean", false, 0.0}};
-    Chart error{"thesis_emission_error",
-                "Error of the light of emissive objects",
-                {"voxels along the longest side", true},
-                {"rel_error", false, 0.0}};
-    std::vector<bool> better;
+    EmissionCurves by_voxels("thesis_emission",
+                             "What emissive objects bring to their neighbours, against the path tracer", "voxels",
+                             {"voxels along the longest side", true}, "light of emissive objects");
+    EmissionCurves by_cones(
+        "thesis_emission_cones",
+        fmt::format("The same at {} voxels by the number of cones, in a picture half as wide", sizes.base), "cones",
+        {"cones at a pixel", true}, "light of emissive objects by cones");
+    constexpr std::array cone_counts = {6, 32, 128};
+    std::vector<bool> finer, more_cones, grey;
     for (const StudyScene& scene : glowing) {
       const Caster caster(scene.scene);
-      const View view = sized(scene.view, sizes.quality_width / 2);
+      const View view = sized(scene.view, sizes.quality_width / 2), small = sized(scene.view, sizes.quality_width / 4);
       PathOptions path;
       path.spp = sizes.spp;
-      const Image truth = reflected(trace_paths(scene.scene, caster, view, path, progress).image);
-      Series ratios{scene.name, ChartStyle::line_points}, errors = ratios;
+      const auto traced = [&](const View& seen) {
+        return reflected(trace_paths(scene.scene, caster, seen, path, progress).image);
+      };
+      const Image truth = traced(view), small_truth = traced(small);
+      by_voxels.begin(scene.name);
+      by_cones.begin(scene.name);
       for (const int resolution : sizes.resolutions) {
         progress.check();
         Settings settings;
         settings.grid.resolution = resolution;
-        const Image cone = reflected(cone_trace(scene.scene, caster, view, settings, {}, progress).image.image);
-        const Deviation d = deviation(measured_cone(cone, false), measured_path(truth, false));
-        table.add({scene.name, double(resolution), d.bias + 1.0, d.rel_error(), d.rel_error_stderr(),
-                   colorfulness(cone), colorfulness(truth)});
-        ratios.points.push_back(chart_point(resolution, d.bias + 1.0));
-        errors.points.push_back(chart_point(resolution, d.rel_error(), "", d.rel_error_stderr()));
+        const PreparedScene prepared(scene, settings, progress);
+        const LitVoxels lit = prepared.lit(settings);
+        by_voxels.add(resolution, reflected(prepared.image(settings, lit, view.width)), truth);
+        if (resolution != sizes.base) continue;
+        for (const int cones : cone_counts) {
+          settings.render.cone.diffuse = cones;
+          by_cones.add(cones, reflected(prepared.image(settings, lit, small.width)), small_truth);
+        }
       }
-      better.push_back(errors.points.back().y < errors.points.front().y);
-      light.series.push_back(std::move(ratios));
-      error.series.push_back(std::move(errors));
+      add_falls(by_voxels.error.series.back(), finer);
+      add_falls(by_cones.error.series.back(), more_cones);
+      const size_t last = by_voxels.table.rows.size() - 1;
+      if (by_voxels.table.number(last, "colorfulness_true") > 0.0)
+        grey.push_back(by_voxels.table.number(last, "colorfulness") <
+                       by_voxels.table.number(last, "colorfulness_true"));
     }
-    const auto ends = std::minmax_element(sizes.resolutions.begin(), sizes.resolutions.end());
-    light.series.push_back(level_line(1.0, *ends.first, *ends.second, "path tracer"));
-    section.text =
+    const double finest = sizes.resolutions.back(), many = cone_counts.back();
+    by_voxels.end(sizes.resolutions.front(), finest);
+    by_cones.end(cone_counts.front(), most_cones);
+    section.text = fmt::format(
         "In physical units (radiometric profile), so that the path tracer can judge; without the emitters' own pixels. "
-        "The coloured lights' separation is the mean of the largest channel less the smallest over the largest's: what "
-        "cones blur and leak into each other's shadows takes it away. Published are pictures.\n\n" +
-        finding("More voxels bring the light nearer to the path tracer's", better, "scenes");
-    section.tables.push_back(std::move(table));
-    section.charts = {std::move(light), std::move(error)};
+        "Published are pictures.\n\nAt {:g} voxels the light is {} times the true one, and the error's RMS {} of its "
+        "mean. {} What six wide cones see of an emitter is its texels, as wide as the cone and nearly opaque where "
+        "they "
+        "hold a part of it: at {} voxels {} cones bring {} times the true light where six bring {}. {}\n\nThe coloured "
+        "lights' separation is the mean of the largest channel less the smallest over the largest's. {}",
+        finest, range(by_voxels.table, "mean_ratio", "voxels", finest),
+        range(by_voxels.table, "rel_error", "voxels", finest),
+        finding("More voxels bring it nearer, by more than both standard errors", finer, "steps in voxels"), sizes.base,
+        cone_counts.back(), range(by_cones.table, "mean_ratio", "cones", many),
+        range(by_cones.table, "mean_ratio", "cones", cone_counts.front()),
+        finding("More cones do", more_cones, "steps in cones"),
+        finding("Cones mix the colours", grey, "coloured scenes; else they keep them further apart than they are"));
+    section.tables = {std::move(by_voxels.table), std::move(by_cones.table)};
+    section.charts = {std::move(by_voxels.light), std::move(by_voxels.error), std::move(by_cones.light),
+                      std::move(by_cones.error)};
   });
 }
 

@@ -7,18 +7,15 @@
 
 namespace voxref {
 
-Section thesis_memory_use(MemoryByScene memory, const std::vector<StudyScene>& others, const ThesisSizes& sizes,
-                          const Progress& progress) {
+Section thesis_memory_use(const MemoryByScene& memory, const ThesisSizes& sizes) {
   return timed_section("Table 4.9: memory", [&](Section& section) {
-    for (const StudyScene& scene : others)
-      for (const int voxels : sizes.resolutions) memory[{scene.name, voxels}] = volume_memory(scene, voxels, progress);
     Shape shape("thesis_memory", fmt::format("All volumes, over those at {} voxels of the same scene", sizes.base),
                 "MB", "MB");
     Chart chart{
         "thesis_memory", "Memory of the volumes", {"voxels along the longest side", true}, {"memory / MB", true}};
     std::map<std::string, std::vector<ShapeLine>> scenes;
     for (const auto& [key, bytes] : memory) {
-      double published = misprint;
+      double published = not_published;
       for (const ThesisMemory& row : thesis_memory)
         if (row.voxels == key.second) published = row.megabytes;
       const double megabytes = 1e-6 * double(bytes);
@@ -37,11 +34,12 @@ Section thesis_memory_use(MemoryByScene memory, const std::vector<StudyScene>& o
     for (const ThesisMemory& row : thesis_memory)
       if (row.voxels <= sizes.resolutions.back()) published.points.push_back(chart_point(row.voxels, row.megabytes));
     chart.series.push_back(std::move(published));
-    static const char* const constant =
+    const std::string constant =
         "the published figures are 211.6 MB that no voxel takes, and 5.14 MB (N/64)^3 of dense volumes, to 2 %; here "
-        "there "
-        "is no such constant, and surfaces grow 4 times per doubling";
-    static const std::vector<ShapeReason> reasons = {{"memory", false, constant}, {"memory", true, constant}};
+        "there is no such constant, and surfaces grow 4 times per doubling";
+    ShapeReason smaller{"memory", false, {}, constant};
+    for (const auto& [key, bytes] : memory) smaller.rows.push_back(fmt::format("{} {}", key.first, key.second));
+    const std::vector<ShapeReason> reasons = {smaller};
     section.text = shape.summary(reasons);
     section.tables.push_back(shape.table());
     section.charts.push_back(std::move(chart));

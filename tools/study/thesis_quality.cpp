@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <utility>
 
@@ -26,11 +27,13 @@ std::vector<glm::vec3> tone_mapped(const Image& image) {
   return pixels;
 }
 
-/// What specular cones bring, alone.
-Image specular_alone(Image image) {
+/// What specular cones alone add to a picture, as its `composite` has it.
+Image specular_alone(Image image, const CompositeOptions& composite) {
   const auto specular = std::as_const(image).layer("specular");
   const auto all = image.layer("");
-  for (size_t c = 0; c < 3; ++c) std::copy(specular[c].begin(), specular[c].end(), all[c].begin());
+  for (size_t c = 0; c < 3; ++c)
+    std::transform(specular[c].begin(), specular[c].end(), all[c].begin(),
+                   [&](float value) { return std::pow(composite.bounce_strength * value, composite.indirect_power); });
   return image;
 }
 
@@ -128,7 +131,7 @@ void add_scene(const StudyScene& scene, const ThesisSizes& sizes, const Progress
     longer.render.cone.step = step;
     stepped.push_back(changes.add(fmt::format("step {:g}", step), prepared.image(longer, lit, sizes.quality_width)));
   }
-  findings.coarser_yee.push_back(coarser[0].yee <= coarser[1].yee && coarser[1].yee <= coarser[2].yee);
+  findings.coarser_yee.push_back(coarser[0].yee < coarser[1].yee && coarser[1].yee < coarser[2].yee);
   findings.coarser_flip.push_back(coarser[0].flip < coarser[1].flip && coarser[1].flip < coarser[2].flip);
   findings.longest.push_back(stepped[0].flip < stepped[1].flip);
 }
@@ -145,7 +148,7 @@ Section thesis_quality(const std::vector<StudyScene>& lamps, const ThesisSizes& 
         auto [yee, flip] = perceived_charts("thesis_quality", "Perceived difference from the base picture");
         Findings findings;
         for (const StudyScene& scene : lamps) add_scene(scene, sizes, progress, table, yee, flip, findings);
-        section.text = metrics +
+        section.text = std::string(metrics) +
                        finding("The difference grows as the resolution falls (Yee)", findings.coarser_yee, "scenes") +
                        " " + finding("The same by FLIP", findings.coarser_flip, "scenes") + " " +
                        finding("A step of 2.5, which skips voxels, differs more than a step of 1 (FLIP)",
@@ -160,36 +163,40 @@ Section thesis_specular(const ThesisSizes& sizes, const Progress& progress) {
     Table table =
         perceived_table("thesis_specular", fmt::format("What is seen of the difference from step 0.1, {} voxels, "
                                                        "{} pixels wide",
-                                                       sizes.base, sizes.quality_width));
+                                                       sizes.quality_base, sizes.quality_width));
     auto [yee, flip] = perceived_charts("thesis_specular", "Specular ball: perceived difference from step 0.1");
     std::vector<bool> grows;
     std::vector<double> at_longest;
     for (const float degrees : {9.0f, 27.0f, 45.0f}) {
       progress.check();
       StudyScene ball = specular_ball(degrees);
-      ball.name = fmt::format("ball, {:g} degrees", degrees);
-      Settings settings = thesis_settings(sizes.base);
+      ball.name = fmt::format("ball, {:.3g} degrees", rendered_half_angle(ball.scene.materials.back()));
+      Settings settings = thesis_shadow_settings(sizes.quality_base);
       const PreparedScene prepared(ball, settings, progress);
       const LitVoxels lit = prepared.lit(settings);
       settings.render.cone.step = 0.1f;
-      const auto picture = [&] { return specular_alone(prepared.image(settings, lit, sizes.quality_width)); };
+      const auto picture = [&] {
+        return specular_alone(prepared.image(settings, lit, sizes.quality_width), settings.render.composite);
+      };
       const Image base = picture();
       Changes changes(table, yee, flip, ball.name, base);
-      double before = 0.0;
+      std::vector<double> seen;
       for (const float step : {0.25f, 0.5f, 1.0f, 2.5f}) {
         settings.render.cone.step = step;
-        const double seen = changes.add(fmt::format("step {:g}", step), picture()).flip;
-        grows.push_back(seen > before);
-        before = seen;
+        seen.push_back(changes.add(fmt::format("step {:g}", step), picture()).flip);
       }
-      at_longest.push_back(before);
+      for (size_t i = 1; i < seen.size(); ++i) grows.push_back(seen[i] > seen[i - 1]);
+      at_longest.push_back(seen.back());
     }
-    section.text = std::string(
-                       "Balls whose specular cones are as wide as those of Bunny, Dragon and Buddha there; their "
-                       "specular light alone. ") +
-                   metrics + finding("Longer steps differ more (FLIP)", grows, "steps of the three balls") + " " +
-                   finding("Thin reflections break up more: 9 degrees differs more than 45 at step 2.5 (FLIP)",
-                           {at_longest.front() > at_longest.back()}, "comparisons");
+    section.text =
+        std::string(
+            "Balls whose specular cones are as wide as those of Bunny, Dragon and Buddha there (as wide as a byte of "
+            "glossiness can tell); what their specular light alone adds to a picture, direct light only in the "
+            "voxels. ") +
+        metrics + finding("Longer steps differ more (FLIP)", grows, "steps from one to the next of the three balls") +
+        " " +
+        finding("Thin reflections break up more: 9 degrees differs more than 45 at step 2.5 (FLIP)",
+                {at_longest.front() > at_longest.back()}, "comparisons");
     section.tables.push_back(std::move(table));
     section.charts = {std::move(yee), std::move(flip)};
   });

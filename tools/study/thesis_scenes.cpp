@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <optional>
 
+#include "cone/cone_set.h"
 #include "make_scenes/assemble.h"
 #include "make_scenes/builders.h"
 #include "make_scenes/shapes.h"
@@ -74,9 +77,12 @@ struct Place {
 };
 constexpr std::array places = {
     Place{"cornell_box", 0.12f, {0.28f, 0.0f, 0.1f}, {0.15f, 0.0f, 0.0f}},
+    Place{"cornell_box_empty", 0.12f, {0.28f, 0.0f, 0.1f}, {0.15f, 0.0f, 0.0f}},
     Place{"sibenik", 1.8f, {-9.0f, -15.3f, 0.0f}, {0.0f, 0.0f, 2.0f}},
     Place{"conference", 0.5f, {0.0f, 0.0f, -1.0f}, {0.6f, 0.0f, 0.0f}},
     Place{"sponza", 2.0f, {-6.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}},
+    Place{"light_box", 0.3f, {0.0f, -0.75f, -0.45f}, {0.5f, 0.0f, 0.0f}},
+    Place{"plane_test", 0.6f, {-0.2f, 0.0f, -0.2f}, {0.8f, 0.0f, 0.0f}},
 };
 
 void add_statues(StudyScene& scene, const std::vector<Statue>& statues) {
@@ -94,50 +100,53 @@ void add_statues(StudyScene& scene, const std::vector<Statue>& statues) {
 
 }  // namespace
 
+namespace {
+
+/// One of the project's own, which need no file.
+std::optional<StudyScene> own_scene(const std::string& name) {
+  if (name == "cornell_box" || name == "cornell_box_empty")
+    return seen_by_first_camera(name, cornell_box(CornellLight::point, /*blocks=*/name == "cornell_box"));
+  if (name == "light_box") return light_box_scene();
+  if (name == "plane_test") return plane_test_scene();
+  return std::nullopt;
+}
+
+/// Where the one lamp hangs; metres.
+glm::vec3 lamp_of(const std::string& name) {
+  if (name.starts_with("cornell_box")) return cornell_point_scene().scene.lights.at(0).position;
+  if (name == "light_box") return light_box_scene().scene.lights.at(0).position;
+  if (name == "plane_test") return {0.5f, 2.2f, 0.8f};  // before the pillar, so that its shadow is seen
+  return standpoint(name).lamp;
+}
+
+}  // namespace
+
 std::vector<StudyScene> thesis_scenes(const StudyRequest& request, std::vector<std::string>& skipped) {
   const std::vector<Statue> statues = load_statues(request.assets, skipped);
   std::vector<StudyScene> scenes;
   for (const Place& place : places) {
-    if (place.scene == std::string("cornell_box")) {
-      scenes.push_back(cornell_point_scene());
-      scenes.back().name = place.scene;
-    } else if (request.quick) {
-      skipped.push_back(std::string(place.scene) + ": too large for --quick");
-      continue;
-    } else if (auto scene = public_scene(place.scene, request.assets, /*sun=*/true)) {
-      scenes.push_back(std::move(*scene));
-    } else {
-      skipped.push_back(std::string(place.scene) + ": not in VOXREF_ASSETS");
-      continue;
-    }
-    add_statues(scenes.back(), statues);
+    std::optional<StudyScene> scene = own_scene(place.scene);
+    const std::string name = place.scene;
+    if (!scene && request.quick)
+      skipped.push_back(name + ": too large for --quick");
+    else if (!scene && !(scene = public_scene(name, request.assets, /*sun=*/true)))
+      skipped.push_back(name + ": not in VOXREF_ASSETS");
+    if (!scene) continue;
+    add_statues(*scene, statues);
+    scenes.push_back(std::move(*scene));
   }
-  StudyScene empty{"cornell_box_empty", cornell_box(CornellLight::point, /*blocks=*/false), {}};
-  empty.view.camera = empty.scene.cameras.at(0);
-  scenes.insert(scenes.begin() + 1, std::move(empty));
   return scenes;
 }
 
 void light_scenes(std::vector<StudyScene>& scenes, ThesisLight light) {
-  constexpr float published_unit = 1.0f;  // its lights fade with no distance
-  const glm::vec3 box_lamp = cornell_point_scene().scene.lights.at(0).position;
-  for (StudyScene& scene : scenes) {
-    const bool box = scene.name.starts_with("cornell_box");
-    if (light == ThesisLight::sun)
-      scene.scene.lights = {study_sun(published_unit)};
-    else
-      scene.scene.lights = {
-          point_light("lamp", box ? box_lamp : standpoint(scene.name).lamp, glm::vec3(published_unit))};
-  }
+  constexpr float published_unit = 1.0f;  // its lights fade with no distance, and bytes hold no more
+  for (StudyScene& scene : scenes)
+    scene.scene.lights = {light == ThesisLight::sun
+                              ? study_sun(published_unit)
+                              : point_light("lamp", lamp_of(scene.name), glm::vec3(published_unit))};
 }
 
 namespace {
-
-StudyScene seen_from(const std::string& name, Scene scene) {
-  StudyScene result{name, std::move(scene), {}};
-  result.view.camera = result.scene.cameras.at(0);
-  return result;
-}
 
 StudyScene glowing_teapot() {
   Scene scene;
@@ -148,7 +157,7 @@ StudyScene glowing_teapot() {
   add_object(scene, "right", box({0.8f, 0.0f, -0.4f}, {1.2f, 0.8f, 0.4f}), grey);
   add_object(scene, "teapot", mesh_of(single_object("teapot")), glow);
   scene.cameras.push_back(camera("front", {0.0f, 1.6f, 3.2f}, {0.0f, 0.3f, 0.0f}, 45.0f, 16.0f / 9.0f));
-  return seen_from("teapot", std::move(scene));
+  return seen_by_first_camera("teapot", std::move(scene));
 }
 
 void add_glowing_ball(Scene& scene, const glm::vec3& center, float radius, const glm::vec3& color) {
@@ -174,16 +183,16 @@ StudyScene two_emitters() {
   add_glowing_ball(scene, {-1.2f, 0.5f, 0.0f}, 0.25f, {3.0f, 0.3f, 0.3f});
   add_glowing_ball(scene, {1.2f, 0.5f, 0.0f}, 0.25f, {0.3f, 0.3f, 3.0f});
   scene.cameras.push_back(camera("above", {0.0f, 3.0f, 3.0f}, {0.0f, 0.2f, 0.0f}, 45.0f, 16.0f / 9.0f));
-  return seen_from("two_emitters", std::move(scene));
+  return seen_by_first_camera("two_emitters", std::move(scene));
 }
 
 }  // namespace
 
 std::vector<StudyScene> glowing_scenes(const std::vector<StudyScene>& scenes) {
   std::vector<StudyScene> glowing = {glowing_teapot()};
-  glowing.push_back(
-      seen_from("colored_cornell_box", with_colored_balls(cornell_box(CornellLight::point, false),
-                                                          {0.28f, 0.15f, 0.28f}, {0.16f, 0.0f, 0.0f}, 0.05f, 3.0f)));
+  glowing.push_back(seen_by_first_camera(
+      "colored_cornell_box", with_colored_balls(cornell_box(CornellLight::point, false), {0.28f, 0.15f, 0.28f},
+                                                {0.16f, 0.0f, 0.0f}, 0.05f, 3.0f)));
   for (const StudyScene& scene : scenes)
     if (scene.name == "sponza") {
       glowing.push_back(scene);
@@ -195,12 +204,16 @@ std::vector<StudyScene> glowing_scenes(const std::vector<StudyScene>& scenes) {
   return glowing;
 }
 
+float rendered_half_angle(const Material& material) {
+  const float in_byte = std::nearbyint(255.0f * material.glossiness) * (1.0f / 255.0f);  // to even, as the G-buffer
+  return glm::degrees(std::atan(published_specular_tan_half_angle(in_byte)));
+}
+
 StudyScene specular_ball(float degrees) {
-  StudyScene result{"specular_ball", cornell_box(CornellLight::point, /*blocks=*/false), {}};
-  add_object(result.scene, "ball", moved(scaled(icosphere(4), 0.15f), {0.278f, 0.16f, 0.28f}),
-             add_material(result.scene, glossy("ball", degrees)));
-  result.view.camera = result.scene.cameras.at(0);
-  return result;
+  Scene box = cornell_box(CornellLight::point, /*blocks=*/false);
+  add_object(box, "ball", moved(scaled(icosphere(4), 0.15f), {0.278f, 0.16f, 0.28f}),
+             add_material(box, glossy("ball", degrees)));
+  return seen_by_first_camera("specular_ball", std::move(box));
 }
 
 }  // namespace voxref

@@ -29,9 +29,8 @@ Section thesis_quality(const std::vector<StudyScene>& lamps, const ThesisSizes& 
 Section thesis_specular(const ThesisSizes& sizes, const Progress& progress);
 /// Figures 4.33 to 4.35. @param glowing without lamps
 Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSizes& sizes, const Progress& progress);
-/// Table 4.9. @param others scenes that are not in `memory` yet
-Section thesis_memory_use(MemoryByScene memory, const std::vector<StudyScene>& others, const ThesisSizes& sizes,
-                          const Progress& progress);
+/// Table 4.9.
+Section thesis_memory_use(const MemoryByScene& memory, const ThesisSizes& sizes);
 
 /// All of them.
 StudyResult thesis_study(const StudyRequest& request, const ThesisSizes& sizes);

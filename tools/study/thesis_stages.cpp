@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "study/curves.h"
 #include "study/thesis_data.h"
@@ -32,7 +33,7 @@ constexpr std::array stage_columns = {
 double published(const std::string& scene, int voxels, double ThesisStages::*column) {
   for (const ThesisStages& row : thesis_stages)
     if (row.scene == scene && row.voxels == voxels) return row.*column;
-  return misprint;
+  return not_published;
 }
 
 /// A scene's stages at the resolutions, in their order.
@@ -59,7 +60,7 @@ Shape by_scene(const std::vector<Measured>& measured, const ThesisSizes& sizes) 
   for (const StageColumn& column : stage_columns) {
     std::vector<ShapeLine> lines;
     for (const Measured& scene : measured) lines.push_back(line_of(scene.scene, column, scene, base, sizes.base));
-    shape.add_block("all", column.name, lines, 0);
+    shape.add_block(all_scenes, column.name, lines, 0);
   }
   for (const Measured& scene : measured) {
     std::vector<ShapeLine> lines;
@@ -82,42 +83,87 @@ Shape by_resolution(const std::vector<Measured>& measured, const ThesisSizes& si
   return shape;
 }
 
-const char* const sparse =
-    "the published volumes are dense, and every voxel is visited; here those that surfaces occupy";
-const char* const contention =
-    "on the GPU fewer voxels take longer, presumably since more fragments wait to be averaged into the same one; here "
-    "time goes with fragments";
-const char* const launches = "published levels cost something each however small they are; here texels alone count";
+// Why rows differ, as far as it is known: from the occupied voxels that are counted beside the times, from the
+// published times themselves, or by arithmetic from the shares.
+
+const char* const dense =
+    "the published passes go over every voxel, 8 times more per doubling and as many in every scene; here over those "
+    "that surfaces occupy (thesis_voxels)";
+const char* const overhead =
+    "the published levels take 0.1 ms however few their texels are; here time goes with texels";
+const char* const fewer =
+    "the GPU takes longer for fewer voxels, why is not known; here time goes with triangles and fragments";
+const char* const cones_lead = "cone tracing, which changes little with the resolution, is more of the total here";
 
 const std::vector<ShapeReason>& reasons_by_scene() {
-  static const std::vector<ShapeReason> reasons = {
-      {"static voxelization", false,
-       "Conference takes there between 39 and 47 ms whatever the resolution, so that it is not its voxels that it is "
-       "spent on; here time goes with fragments"},
-      {"mipmap", false, sparse},
-      {"second mipmap", false, sparse},
-      {"bounce", true,
-       "there the Cornell box is the dearest, since cones are traced far through empty space; here they jump over it, "
-       "and "
-       "time goes with the occupied voxels"},
-      {"share of the dynamic total", false, std::string("stages that go over volumes: ") + sparse},
-      {"share of the dynamic total", true, "voxelization: a GPU has a rasterizer, which is computed here"},
+  const auto shares = [](const std::string& stage) {
+    return std::vector<std::string>{"cornell_box " + stage, "sibenik " + stage, "conference " + stage,
+                                    "sponza " + stage};
   };
+  static const std::vector<ShapeReason> reasons = [&] {
+    std::vector<ShapeReason> all = {
+        {"static voxelization",
+         false,
+         {"conference"},
+         "there it takes 39 to 47 ms whatever the resolution, so that it is not voxels that it is spent on; here time "
+         "goes with triangles and fragments"},
+        {"clear dynamic", true, {"sponza", "sibenik"}, dense},
+        {"mipmap", false, {"sibenik", "conference", "sponza"}, dense},
+        {"second mipmap", false, {"sibenik", "conference", "sponza"}, dense}};
+    for (const char* stage : {"clear dynamic", "dynamic voxelization", "shading", "mipmap", "bounce", "second mipmap"})
+      all.push_back({"share of the dynamic total", false, shares(stage),
+                     "cone tracing is more of the total here, which leaves less for the rest"});
+    return all;
+  }();
   return reasons;
+}
+
+/// "SCENE VOXELS" of all four published scenes.
+std::vector<std::string> at(std::initializer_list<int> resolutions) {
+  std::vector<std::string> rows;
+  for (const char* scene : {"cornell_box", "sibenik", "conference", "sponza"})
+    for (const int voxels : resolutions) rows.push_back(fmt::format("{} {}", scene, voxels));
+  return rows;
 }
 
 const std::vector<ShapeReason>& reasons_by_resolution() {
   static const std::vector<ShapeReason> reasons = {
-      {"static voxelization", false, contention},
-      {"static voxelization", true, contention},
-      {"clear dynamic", true, sparse},
-      {"dynamic voxelization", false, contention},
-      {"dynamic voxelization", true, contention},
-      {"mipmap", false, launches},
-      {"second mipmap", false, launches},
-      {"dynamic total", false, "at few voxels the dynamic voxelization is most of the published total: see there"},
+      {"static voxelization", false, {"sibenik 64", "sibenik 128", "sponza 64", "sponza 128"}, fewer},
+      {"static voxelization", true, {"sponza 512"}, fewer},
+      {"clear dynamic", true, at({64, 128}), dense},
+      {"clear dynamic", false, at({512}), dense},
+      {"dynamic voxelization", false, at({64, 128}), fewer},
+      {"dynamic voxelization", true, {"sibenik 512", "conference 512", "sponza 512"}, fewer},
+      {"shading", true, at({64, 128}), dense},
+      {"shading", false, at({512}), dense},
+      {"mipmap", false, at({64}), overhead},
+      {"mipmap", false, at({512}), dense},
+      {"mipmap", true, at({128}), dense},
+      {"second mipmap", false, at({64}), overhead},
+      {"second mipmap", false, at({512}), dense},
+      {"second mipmap", true, at({128}), dense},
+      {"dynamic total", true, {"cornell_box 64"}, cones_lead},
+      {"dynamic total", false, at({512}), cones_lead},
+      {"dynamic total",
+       false,
+       {"sibenik 64", "sponza 64"},
+       "the dynamic voxelization, which takes longer there for fewer voxels, is most of the published total"},
   };
   return reasons;
+}
+
+/// What times go with here.
+Table voxels_table(const std::vector<Measured>& measured, const ThesisSizes& sizes) {
+  Table table{"thesis_voxels",
+              "Voxels that surfaces occupy, and their share of the published dense cube",
+              {{"scene", ""}, {"voxels", ""}, {"occupied", ""}, {"share", "%"}}};
+  for (const Measured& scene : measured)
+    for (size_t i = 0; i < sizes.resolutions.size(); ++i) {
+      const auto occupied = double(scene.by_resolution[i].voxels);
+      table.add({scene.scene, double(sizes.resolutions[i]), occupied,
+                 100.0 * occupied / std::pow(double(sizes.resolutions[i]), 3.0)});
+    }
+  return table;
 }
 
 }  // namespace
@@ -136,14 +182,15 @@ Section thesis_stage_times(const std::vector<StudyScene>& scenes, const ThesisSi
     const Shape scene_shape = by_scene(measured, sizes), resolution_shape = by_resolution(measured, sizes);
     section.text =
         fmt::format(
-            "The published rules, under a sun without traced shadows, {} pixels wide in place of 1280. Seconds are the "
-            "processor's, all threads together: what other programs take does not count. Clearing "
-            "what was dynamic is here taking the static voxels over. The second mipmap is measured alone, and "
-            "taken off the bounce, which it is a part of.\n\nBy scene, {} voxels:\n\n",
-            sizes.width_720, sizes.base) +
-        scene_shape.summary(reasons_by_scene()) + "\n\nBy resolution:\n\n" +
-        resolution_shape.summary(reasons_by_resolution());
-    section.tables = {scene_shape.table(), resolution_shape.table()};
+            "The published rules, under a sun without traced shadows. Cones are traced for as many pixels as {}x{} has "
+            "in every scene, and their time scaled to the published 1280x720. Seconds are the processor's, all threads "
+            "together: what other programs take does not count. Clearing what was dynamic is here taking the static "
+            "voxels over. The second mipmap is measured alone, and taken off the bounce, which it is a part of.\n\nBy "
+            "scene, {} voxels: ",
+            sizes.width_720, sizes.width_720 * 9 / 16, sizes.base) +
+        scene_shape.summary(reasons_by_scene()) +
+        "\n\nBy resolution: " + resolution_shape.summary(reasons_by_resolution());
+    section.tables = {scene_shape.table(), resolution_shape.table(), voxels_table(measured, sizes)};
     for (const auto& [name, quantity] : {std::pair("thesis_total", "dynamic total"),
                                          std::pair("thesis_bounce", "bounce"), std::pair("thesis_mipmap", "mipmap")}) {
       Chart chart{name,
