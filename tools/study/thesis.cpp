@@ -23,6 +23,7 @@ StudyResult thesis_study(const StudyRequest& request, const ThesisSizes& sizes) 
   add(thesis_specular(sizes, progress));
   scenes.clear();  // hundreds of megabytes
   add(thesis_emission(glowing, sizes, progress));
+  result.skipped.emplace_back("figures 4.7 to 4.10 and 4.31: what they show is not described to this study");
   add(thesis_memory_use(memory, sizes));
   return result;
 }

@@ -10,7 +10,8 @@ namespace voxref {
 
 struct ThesisSizes {
   std::vector<int> resolutions;
-  int base = 256;  ///< voxels; rows are set over those of this resolution
+  static constexpr int published_base = 256;  ///< for which reasons of differences are known
+  int base = published_base;                  ///< voxels; rows are set over those of this resolution
   /// Of timed images, in place of 1280 and 1920: as many times more pixels, see timed_view.
   int width_720 = 640, width_1080 = 960;
   int quality_width = 480, quality_base = 512;  ///< of the base pictures, 1920 and 512 there: pixels, voxels

@@ -121,7 +121,7 @@ Section thesis_cone_times(const std::vector<StudyScene>& scenes, const ThesisSiz
             "At {} voxels; as many pixels as {}x{} and {}x{} have stand for the published screens. Step 1 is not "
             "published.\n\n",
             sizes.base, sizes.width_720, sizes.width_720 * 9 / 16, sizes.width_1080, sizes.width_1080 * 9 / 16) +
-        shape.summary(fixed.reasons());
+        shape.summary(sizes.base == ThesisSizes::published_base ? fixed.reasons() : std::vector<ShapeReason>());
     section.tables.push_back(shape.table());
     Chart steps{
         "thesis_step", "Cone tracing by step", {"step / cone diameters", true}, {"time / that at step 0.5", true}};

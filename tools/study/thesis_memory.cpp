@@ -39,7 +39,8 @@ Section thesis_memory_use(const MemoryByScene& memory, const ThesisSizes& sizes)
         "there is no such constant, and surfaces grow 4 times per doubling";
     ShapeReason smaller{"memory", false, {}, constant};
     for (const auto& [key, bytes] : memory) smaller.rows.push_back(fmt::format("{} {}", key.first, key.second));
-    const std::vector<ShapeReason> reasons = {smaller};
+    std::vector<ShapeReason> reasons;
+    if (sizes.base == ThesisSizes::published_base) reasons.push_back(std::move(smaller));
     section.text = shape.summary(reasons);
     section.tables.push_back(shape.table());
     section.charts.push_back(std::move(chart));

@@ -1,5 +1,6 @@
 // Figures 4.12 to 4.30: how different pictures look from a base picture.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -105,6 +106,7 @@ const char* const metrics =
 
 /// What the thesis finds, held against each scene's rows.
 struct Findings {
+  std::vector<std::string> unseen;  ///< scenes of which Yee's metric tells no pixel apart at any resolution
   std::vector<bool> coarser_yee, coarser_flip, longest;
 };
 
@@ -132,6 +134,7 @@ void add_scene(const StudyScene& scene, const ThesisSizes& sizes, const Progress
     stepped.push_back(changes.add(fmt::format("step {:g}", step), prepared.image(longer, lit, sizes.quality_width)));
   }
   findings.coarser_yee.push_back(coarser[0].yee < coarser[1].yee && coarser[1].yee < coarser[2].yee);
+  if (coarser[2].yee == 0.0) findings.unseen.push_back(scene.name);
   findings.coarser_flip.push_back(coarser[0].flip < coarser[1].flip && coarser[1].flip < coarser[2].flip);
   findings.longest.push_back(stepped[0].flip < stepped[1].flip);
 }
@@ -150,6 +153,9 @@ Section thesis_quality(const std::vector<StudyScene>& lamps, const ThesisSizes& 
         for (const StudyScene& scene : lamps) add_scene(scene, sizes, progress, table, yee, flip, findings);
         section.text = std::string(metrics) +
                        finding("The difference grows as the resolution falls (Yee)", findings.coarser_yee, "scenes") +
+                       (findings.unseen.empty() ? ""
+                                                : fmt::format(" At the coarsest it tells no pixel apart of: {}.",
+                                                              fmt::join(findings.unseen, ", "))) +
                        " " + finding("The same by FLIP", findings.coarser_flip, "scenes") + " " +
                        finding("A step of 2.5, which skips voxels, differs more than a step of 1 (FLIP)",
                                findings.longest, "scenes");

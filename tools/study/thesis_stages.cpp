@@ -180,6 +180,8 @@ Section thesis_stage_times(const std::vector<StudyScene>& scenes, const ThesisSi
       }
     }
     const Shape scene_shape = by_scene(measured, sizes), resolution_shape = by_resolution(measured, sizes);
+    const bool known = sizes.base == ThesisSizes::published_base;
+    const std::vector<ShapeReason> none;
     section.text =
         fmt::format(
             "The published rules, under a sun without traced shadows. Cones are traced for as many pixels as {}x{} has "
@@ -188,8 +190,8 @@ Section thesis_stage_times(const std::vector<StudyScene>& scenes, const ThesisSi
             "voxels over. The second mipmap is measured alone, and taken off the bounce, which it is a part of.\n\nBy "
             "scene, {} voxels: ",
             sizes.width_720, sizes.width_720 * 9 / 16, sizes.base) +
-        scene_shape.summary(reasons_by_scene()) +
-        "\n\nBy resolution: " + resolution_shape.summary(reasons_by_resolution());
+        scene_shape.summary(known ? reasons_by_scene() : none) +
+        "\n\nBy resolution: " + resolution_shape.summary(known ? reasons_by_resolution() : none);
     section.tables = {scene_shape.table(), resolution_shape.table(), voxels_table(measured, sizes)};
     for (const auto& [name, quantity] : {std::pair("thesis_total", "dynamic total"),
                                          std::pair("thesis_bounce", "bounce"), std::pair("thesis_mipmap", "mipmap")}) {
