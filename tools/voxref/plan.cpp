@@ -128,11 +128,10 @@ void add_plan(CLI::App& program, Run& run) {
   add_common_options(*command, options->common);
   command->footer(
       "Chosen are grid.resolution, bounce.count, cone.diffuse, cone.step and storage, but for those that --set or\n"
-      "--config give; the others are as given. Errors are measured on a small image against the path tracer, and held\n"
-      "against the budget as measured, whatever their error bars; time and memory are predicted for --size. Exits with "
-      "1,\n"
-      "and names and writes the closest, when no setting reaches the budget. Ctrl-C writes nothing and exits with "
-      "2.\n\n"
+      "--config give; the others are as given. Errors are measured on a small image against the path tracer, and\n"
+      "held against the budget as measured, whatever their error bars. Time and memory are predicted for --size,\n"
+      "time from how long stages took on this machine, so that two runs may choose differently. Exits with 1, and\n"
+      "names and writes the closest, when no setting reaches the budget. Ctrl-C writes nothing and exits with 2.\n\n"
       "Example:\n  voxref plan scenes/cornell_box_point.glb --budget 0.3 -o plan.json\n"
       "  voxref cone scenes/cornell_box_point.glb -o cone.exr --config plan.json");
   on_run(command, run, [options] { return run_plan(*options); });
