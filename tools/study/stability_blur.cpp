@@ -126,12 +126,11 @@ Failure specular_blur() {
   failure.text = fmt::format(
       "A bright and a dark half of a wall, in front of a cone that moves across their edge; the standard deviation of "
       "what it sees of the edge, mean over {} places of the edge in the grid. A disc of the cone's diameter d blurs by "
-      "d "
-      "/ 4. Texels of side n, averaged and interpolated, blur by sqrt(n^2 / 4 - 1 / 6): twice as much where n = d, and "
-      "0.29 voxels by the finest, however narrow the cone is. That is theory here, with the variances of two levels "
-      "mixed in between by log2 d. It knows one diameter, that at the wall's front; but texels reach in front of the "
-      "wall and behind it, and the cone goes on widening there. So the blur agrees with theory to {:.1f} % at {:g} "
-      "voxels from the apex, and to {:.1f} % at {:g}.",
+      "d / 4. Texels of side n, averaged and interpolated, blur by sqrt(n^2 / 4 - 1 / 6): twice as much where n = d, "
+      "and 0.29 voxels by the finest, however narrow the cone is. That is theory here, with the variances of two "
+      "levels mixed in between by log2 d. It knows one diameter, that at the wall's front; but texels reach in front "
+      "of the wall and behind it, and the cone goes on widening there. So the blur agrees with theory to {:.1f} % at "
+      "{:g} voxels from the apex, and to {:.1f} % at {:g}.",
       edge_places, 100.0 * off_far, far, 100.0 * off_near, near);
   Chart chart{"stability_specular_blur",
               "Blur of an edge by the cone's diameter there",

@@ -132,15 +132,13 @@ Failure contact_gap() {
   }
   failure.text = fmt::format(
       "A cone starts off its surface by a few voxels. Too near, a glowing floor lights itself. The floor's light from "
-      "a "
-      "wall that glows is held against the form factor of perpendicular rectangles, one and four voxels from the "
+      "a wall that glows is held against the form factor of perpendicular rectangles, one and four voxels from the "
       "contact. A march returns to the line from the surface itself as soon as that has risen as high as the start, so "
       "that from 0.75 voxels on little depends on it. What is left is too much light, not too little: at the shipped "
       "start {:+.0f} % at one voxel and {:+.0f} % at four with 6 cones, whose texels at the wall's foot are nearly "
       "opaque where they hold a part of it; {:+.0f} and {:+.0f} % with 128.\n\nThe published cones start at {:g} "
-      "voxels, "
-      "take their first sample two voxels further and read opacity raw: {:+.0f} and {:+.0f} %, and a floor that glows "
-      "with 1 lights itself with {:.2f}.",
+      "voxels, take their first sample two voxels further and read opacity raw: {:+.0f} and {:+.0f} %, and a floor "
+      "that glows with 1 lights itself with {:.2f}.",
       100.0 * value_at(errors.series[0], shipped), 100.0 * value_at(errors.series[1], shipped),
       100.0 * value_at(errors.series[2], shipped), 100.0 * value_at(errors.series[3], shipped), published,
       100.0 * published_1, 100.0 * published_4, published_own);

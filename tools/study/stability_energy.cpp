@@ -60,10 +60,9 @@ Failure clamping() {
   Failure failure{
       "Clamping in bytes",
       "The Cornell box under a lamp of growing power, in unorm8 against float32. Bytes hold radiance to 1; beyond, "
-      "light "
-      "is lost, and far below, rounding takes over. Theory is the share of the voxels' own light, by area, that bytes "
-      "hold; which voxels a pixel sees, it does not know, nor that filtering rounds again: below a peak of 0.3 the "
-      "latter takes up to half of what theory leaves.",
+      "light is lost, and far below, rounding takes over. Theory is the share of the voxels' own light, by area, that "
+      "bytes hold; which voxels a pixel sees, it does not know, nor that filtering rounds again: below a peak of 0.3 "
+      "the latter takes up to half of what theory leaves.",
       {"stability_clamping",
        "Mean indirect light in unorm8 over that in float32, by the voxels' peak",
        {{"peak", "W/(sr m^2)"}, {"ratio", ""}, {"theory", ""}}}};
@@ -142,11 +141,9 @@ Failure feedback_gain() {
   Failure failure{
       "Feedback gain of the bounces",
       "A closed cube that glows with 1 and reflects the share r: each bounce adds r times the one before, 1 - r^(n+2) "
-      "of "
-      "1 / (1 - r) after n of them at the voxels, a last one at the pixel and the light itself; they end when one more "
-      "would add less than 1 %. The gain is r. At and above 1 "
-      "there "
-      "is no limit to gather; voxels that reflect 1.1 (no material can) are refused.",
+      "of 1 / (1 - r) after n of them at the voxels, a last one at the pixel and the light itself; they end when one "
+      "more would add less than 1 %. The gain is r. At and above 1 there is no limit to gather; voxels that reflect "
+      "1.1 (no material can) are refused.",
       {"stability_gain",
        "Loop gain, and total light over 1 / (1 - r)",
        {{"albedo", ""},

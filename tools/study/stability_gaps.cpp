@@ -157,8 +157,7 @@ Failure cone_gaps() {
       "share of the hemisphere that is inside a cone, and inside two. Round cones of square cells of the same solid "
       "angle leave {:.3f} out, four segments of a circle, and overlap with their neighbours by as much. Of any set the "
       "shares inside one and inside two add up to at most the cones' own solid angle, which is less than the "
-      "hemisphere "
-      "for the published sets.",
+      "hemisphere for the published sets.",
       light.x.categories.size(), worst.off, worst.off_wide, square_gap());
   failure.thresholds = {
       {"cone_factor", worst.factor, "", "most that what a partition gathers of L = cos is off the truth, relative"},

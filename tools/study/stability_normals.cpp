@@ -82,8 +82,8 @@ Failure opposite_normals() {
       "A slab under a sun, its lower side black. Both sides share a voxel with probability 1 - t for a thickness of t "
       "voxels, anywhere in the grid; their normals cancel, and the voxel is lit as a sheet that shows 1/2 to both "
       "sides. So theory is 1 - (1 - t) / 2 above and (1 - t) / 2 below, and nothing of it from one voxel on. The "
-      "published profile has no normal there: what it makes of the average in bytes is shown beside it, without "
-      "traced shadows, over the same lit radiance.",
+      "published profile has no normal there: what it makes of the average in bytes is shown beside it, without traced "
+      "shadows, over the same lit radiance.",
       {"stability_opposite_normals",
        "Light that a slab's sides send, over that of the lit one",
        {{"thickness", "voxels"},

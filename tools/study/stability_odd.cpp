@@ -89,10 +89,8 @@ std::vector<OddScene> odd_scene_list() {
 Failure odd_scenes() {
   Failure failure{"Odd scenes",
                   "Rendered with two bounces at 24 voxels, beside the path tracer with as many. Every value must be "
-                  "finite; where no "
-                  "light is or nothing reflects it must be black, and triangles without area must not change a bit. Of "
-                  "the rest, how "
-                  "far the mean is off is held to what it was.",
+                  "finite; where no light is or nothing reflects it must be black, and triangles without area must not "
+                  "change a bit. Of the rest, how far the mean is off is held to what it was.",
                   {"stability_odd",
                    "Scenes at the borders",
                    {{"scene", ""},

@@ -35,8 +35,7 @@ Failure rotation() {
   Failure failure{
       "Rotation against the grid",
       "A closed cube that glows with radiance 1 shows 1 everywhere. Turned about +Z or about (1, 2, 3), its walls "
-      "cross "
-      "the grid at an angle.",
+      "cross the grid at an angle.",
       {"stability_rotation",
        "What a closed glowing cube shows of its radiance",
        {{"angle", "degrees"},

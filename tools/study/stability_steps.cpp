@@ -35,10 +35,9 @@ Failure step_dependence() {
   Failure failure{
       "Step dependence",
       "Transmittance of a layer of one voxel and opacity 0.5 for steps of several lengths; geometric mean over where "
-      "the "
-      "samples fall. Opacity read raw is not corrected: n samples per voxel transmit 0.5^n of whole texels, and of the "
-      "interpolated ones that are read exp(-(2 - 2 ln 2) n) = 0.541^n. Extinction keeps 0.5 as long as a step is no "
-      "longer than a voxel.",
+      "the samples fall. Opacity read raw is not corrected: n samples per voxel transmit 0.5^n of whole texels, and of "
+      "the interpolated ones that are read exp(-(2 - 2 ln 2) n) = 0.541^n. Extinction keeps 0.5 as long as a step is "
+      "no longer than a voxel.",
       {"stability_step",
        "Transmittance of a layer of one voxel of opacity 0.5",
        {{"step", "voxels"},

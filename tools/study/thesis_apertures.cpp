@@ -79,9 +79,7 @@ Section thesis_apertures(const ThesisSizes& sizes, const Progress& progress) {
       softer.push_back(table.number(i, "penumbra") > table.number(i - 1, "penumbra"));
     section.text =
         "Cornell box with a specular ball (whose half-angle a byte of glossiness rounds), or with shadow cones to its "
-        "lamp; the Plane Test with shadow cones to its "
-        "sun. "
-        "Published are curves and pictures without numbers.\n\n" +
+        "lamp; the Plane Test with shadow cones to its sun. Published are curves and pictures without numbers.\n\n" +
         finding("Wider cones are faster, 45 against 1 degree, by more than both spreads",
                 {faster("specular"), faster("shadow")}, "kinds of cone (specular, shadow)") +
         " " + finding("A wider shadow cone is softer: more pixels see a part of the light", softer, "steps in angle") +

@@ -156,8 +156,8 @@ Section thesis_shadow_times(const std::vector<StudyScene>& lamps, const ThesisSi
                           0);
         });
     section.text =
-        "One point light, no bounce at the voxels. In place of the published shadow map, which this program has "
-        "not, its first line has no shadows at all.\n\n" +
+        "One point light, no bounce at the voxels. In place of the published shadow map, which this program has not, "
+        "its first line has no shadows at all.\n\n" +
         shape.summary(shadow_reasons());
     section.tables.push_back(shape.table());
     Chart chart{"thesis_shadows",

@@ -150,8 +150,7 @@ std::string Shape::summary(std::span<const ShapeReason> reasons) const {
   }
   if (all.empty()) return "Nothing was published for what was measured.";
   std::string text = fmt::format(
-      "{} of {} ratios agree with the published ones ({} would if nothing changed), of {} the "
-      "spread leaves it open.",
+      "{} of {} ratios agree with the published ones ({} would if nothing changed), of {} the spread leaves it open.",
       sum.agree, sum.compared, sum.constant, sum.unsure.size());
   for (const auto& [quantity, verdicts] : all) text += "\n\n" + sentence(quantity, verdicts);
   return text;
