@@ -49,20 +49,24 @@ struct FixedShares {
     published.push_back(fixed_share(steps[0].published, steps[2].published));
     without_samples.push_back(none.spread.median / usual);
   }
-  std::vector<ShapeReason> reasons() const {
-    if (ours.empty()) return {};
-    const std::string why = fmt::format(
-        "{} of the time at step 0.5 do not depend on the step here, {} there (as a + b / step has it); {} are left "
-        "where cones take no sample at all",
+  std::string sentence() const {
+    if (ours.empty()) return "";
+    return fmt::format(
+        "\n\nAs a + b / step has it, {} of the time at step 0.5 do not depend on the step here, {} there. Where cones "
+        "take no sample at all, {} are left; what makes the rest is not known.",
         percent_range(ours), percent_range(published), percent_range(without_samples));
-    ShapeReason shorter{"step", false, {}, why}, longer{"step", true, {}, why};
-    for (const ThesisCones& row : thesis_cones) {
-      for (const char* step : {"0.1", "0.25"}) shorter.rows.push_back(fmt::format("{} {}", row.scene, step));
-      longer.rows.push_back(fmt::format("{} 2.5", row.scene));
-    }
-    return {shorter, longer};
   }
 };
+
+std::vector<ShapeReason> step_reasons() {
+  const std::string why = "more of the time does not depend on the step, see below";
+  ShapeReason shorter{"step", false, {}, why}, longer{"step", true, {}, why};
+  for (const ThesisCones& row : thesis_cones) {
+    for (const char* step : {"0.1", "0.25"}) shorter.rows.push_back(fmt::format("{} {}", row.scene, step));
+    longer.rows.push_back(fmt::format("{} 2.5", row.scene));
+  }
+  return {shorter, longer};
+}
 
 std::vector<ShapeReason> shadow_reasons() {
   ShapeReason map{
@@ -121,7 +125,8 @@ Section thesis_cone_times(const std::vector<StudyScene>& scenes, const ThesisSiz
             "At {} voxels; as many pixels as {}x{} and {}x{} have stand for the published screens. Step 1 is not "
             "published.\n\n",
             sizes.base, sizes.width_720, sizes.width_720 * 9 / 16, sizes.width_1080, sizes.width_1080 * 9 / 16) +
-        shape.summary(sizes.base == ThesisSizes::published_base ? fixed.reasons() : std::vector<ShapeReason>());
+        shape.summary(sizes.base == ThesisSizes::published_base ? step_reasons() : std::vector<ShapeReason>()) +
+        fixed.sentence();
     section.tables.push_back(shape.table());
     Chart steps{
         "thesis_step", "Cone tracing by step", {"step / cone diameters", true}, {"time / that at step 0.5", true}};

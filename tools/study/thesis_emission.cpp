@@ -149,9 +149,9 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
         "In physical units (radiometric profile), so that the path tracer can judge; without the emitters' own pixels. "
         "Published are pictures.\n\nAt {:g} voxels the light is {} times the true one, and the error's RMS {} of its "
         "mean. {} Part of it is that six cones are wide: at {} voxels they bring {} times the true light, {:g} cones "
-        "{}. {} What is left even to narrow cones is that emitters are larger by 1.3 to 1.5 voxels than they are "
-        "(study stability, growth of emitters).\n\nThe coloured lights' separation is the mean of the largest channel "
-        "less the smallest over the largest's. Six cones: {} {:g} cones: {}",
+        "{}. {} What is left is not taken apart: texels of such cones are wide still, and emitters are larger by up to "
+        "1.5 voxels even to the narrowest (study stability, growth of emitters).\n\nThe coloured lights' separation is "
+        "the mean of the largest channel less the smallest over the largest's. Six cones: {} {:g} cones: {}",
         finest, range(by_voxels.table, "mean_ratio", "voxels", finest),
         range(by_voxels.table, "rel_error", "voxels", finest),
         finding("More voxels bring it nearer, by more than both standard errors", finer, "steps in voxels"), sizes.base,
