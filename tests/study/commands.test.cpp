@@ -1,4 +1,6 @@
 // voxref study and voxref plan, as a script runs them.
+#include <limits>
+
 #include "cli/workplace.h"
 
 TEST_CASE("voxref study lists its studies, and refuses others and a missing folder", "[study][cli]") {
@@ -13,6 +15,9 @@ TEST_CASE("voxref study lists its studies, and refuses others and a missing fold
   check_refused(place, "study pareto missing.glb -o out", "missing.glb");
   check_refused(place, "study ladder --gpu image.exr -o out", "--gpu: needs the one scene");
   check_refused(place, "study pareto point.glb --gpu image.exr -o out", "--gpu: is for ladder alone");
+  check_refused(place, "study pareto point.glb --set cone.step=1 -o out", "--set: is for ladder alone");
+  check_refused(place, "study ladder --eye 1,2,3 --target 0,0,0 -o out", "--eye: needs the SCENE");
+  check_refused(place, "study ladder point.glb --set cone.stop=1 -o out", "cone.step");
   check_refused(place, "study all point.glb -o out", "SCENE: is not for thesis");
   check_refused(place, "study stability point.glb -o out", "SCENE: is not for stability");
   std::filesystem::create_directory(place.path("b"));
@@ -49,6 +54,46 @@ TEST_CASE("A gnuplot that does not work is refused before the work", "[study][cl
   CHECK(outcome.status == 2);
   CHECK(contains(outcome.err, "gnuplot: trial: no fonts"));
   CHECK(!fs::exists(place.path("out")));
+}
+
+TEST_CASE("voxref study refuses an image that the ladder cannot end at, before it works", "[study][cli]") {
+  const Workplace place;
+  const auto write = [&](const std::string& name, int width, int height, float value) {
+    voxref::Image image(width, height);
+    image.add_layer("");
+    image.channel("G")[4] = value;
+    voxref::write_exr(place.path(name), image);
+  };
+  write("square.exr", 8, 8, 1.0f);
+  write("wide.exr", 16, 8, 1.0f);
+  write("nan.exr", 8, 8, std::numeric_limits<float>::quiet_NaN());
+  const auto refused = [&](const std::string& arguments, const std::string& reason) {
+    check_refused(place, "study ladder " + arguments + " -o out --quick", reason);
+  };
+  refused("point.glb --gpu absent.exr", "absent.exr: ");
+  refused("point.glb --gpu nan.exr", "nan.exr: pixel (4, 0): is not finite; 1 of 64 pixels are not");
+  refused("point.glb --gpu wide.exr", "wide.exr: size: 16x8 is 2 times as wide as high, the scene's camera");
+  refused("empty.gltf --gpu square.exr", "square.exr: camera: the scene has none");
+  refused("point.glb --camera nobody --gpu square.exr", "--camera: the scene has no camera 'nobody'");
+}
+
+TEST_CASE("voxref study takes a user's settings, camera and image, and says how to do it again", "[study][cli]") {
+  const Workplace place;
+  voxref::write_glb(place.path("plane.glb"), voxref::point_light_over_plane(), "for the tests");
+  const std::string look = " --eye 0,1.5,1.5 --target 0,0,0 --background 0.1,0.1,0.1", goal = " --set cone.diffuse=4";
+  REQUIRE(place.run("cone plane.glb -o mine.exr --size 24x16 --set grid.resolution=32" + look + goal).status == 0);
+  const json result =
+      place.run_json("study ladder plane.glb -o out --quick --set grid.resolution=32 --gpu mine.exr" + look + goal);
+  const json& study = result["studies"][0];
+  CHECK(study["command"] ==
+        "voxref study ladder plane.glb -o out --quick --eye 0,1.5,1.5 --target 0,0,0 --background 0.1,0.1,0.1 --set "
+        "grid.resolution=32 --set cone.diffuse=4 --gpu mine.exr");
+  const json& section = study["sections"][0];
+  CHECK(section["warnings"].empty());
+  CHECK(contains(section["text"], "24x16 pixels"));
+  CHECK(contains(
+      section["text"],
+      "Your image differs from the cone-traced one of your settings by +0.000 % of that one's mean, and 0.000 % RMS"));
 }
 
 TEST_CASE("voxref plan writes settings that cone takes, and says what it measured", "[plan][cli]") {

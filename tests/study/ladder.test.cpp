@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "catch.h"
+#include "closed_form/polygon.h"
 #include "make_scenes/builders.h"
-#include "pipeline.h"
-#include "study/ladder_charts.h"
+#include "reference/small_scenes.h"
+#include "study/ladder_setup.h"
+#include "study/ray_gather.h"
 #include "study/study_scenes.h"
 
 using namespace voxref;
@@ -27,72 +30,144 @@ TEST_CASE("A step between rungs is their paired difference, its noise taken out"
   CHECK(noisy.square.root() == 0.0);
 }
 
-TEST_CASE("The ladder's biases add up to what separates independent images of its ends", "[ladder]") {
+TEST_CASE("The ladder's ends, rendered anew, are apart by what its rungs add up to", "[ladder]") {
   const StudyScene scene = cornell_point_scene();
   const View view = sized(scene.view, 16);
-  LadderOptions options;
-  options.resolution = 32;
-  options.tries = 4;
-  options.spp = 32;
-  options.marched_rays = 8;
-  options.voxel_rays = 16;
-  options.narrow_cones = 64;
-  options.published = false;
+  const LadderOptions options = small_options(32);
   const LadderClimb climb = climb_ladder(scene, view, options, {});
   const std::vector<RungImage>& rungs = climb.rungs;
   REQUIRE(rungs.size() == 10);
   CHECK(climb.shipped == 7);
-  CHECK(climb.first_published == rungs.size());
-  std::vector<Region> regions = {{"whole", {}}, {"top", {}}};
-  for (size_t i = 0; i < rungs[0].tries[0].size(); ++i) {
-    regions[0].pixels.push_back(i);
-    if (i < rungs[0].tries[0].size() / 2) regions[1].pixels.push_back(i);
-  }
+  CHECK(climb.first_parameter == rungs.size());
+  CHECK(climb.warnings.empty());
+  const std::vector<size_t> all = all_pixels(climb);
+  const std::vector<Region> regions = {{"whole", all}, {"top", {all.begin(), all.begin() + 128}}};
   const Table closed = closure(scene, view, options, climb, regions, {});
   REQUIRE(closed.rows.size() == 2);
   for (size_t k = 0; k < 2; ++k) {
-    double sum = 0.0;
-    for (size_t r = 1; r < rungs.size(); ++r) sum += rung_step(rungs[r - 1], rungs[r], regions[k].pixels).bias.mean;
-    CHECK(sum == Approx(rung_step(rungs.front(), rungs.back(), regions[k].pixels).bias.mean).epsilon(1e-9));
     CAPTURE(closed.number(k, "gap"), closed.number(k, "gap_stderr"));
     CHECK(closed.number(k, "sum") == Approx(closed.number(k, "ends")).margin(3.0));  // percent: noise of 128 samples
     CHECK(closed.number(k, "p") > 0.01);
   }
-  // Where one end was another picture the gap shows.
-  LadderClimb broken = climb;
-  for (double& value : broken.rungs.back().tries[0]) value *= 1.1;
-  CHECK(closure(scene, view, options, broken, regions, {}).number(0, "p") < 0.01);
+  // Were either end another picture the gap would show it.
+  for (const size_t end : {size_t{0}, rungs.size() - 1}) {
+    LadderClimb broken = climb;
+    for (auto& values : broken.rungs[end].tries)
+      for (double& value : values) value *= 1.1;
+    CHECK(closure(scene, view, options, broken, regions, {}).number(0, "p") < 0.01);
+  }
 
-  const Caster caster(scene.scene);
   Settings settings;
   settings.grid.resolution = options.resolution;
-  const Image shipped = cone_trace(scene.scene, caster, view, settings).image.image;
-  CHECK(rungs[climb.shipped].tries == std::vector<std::vector<double>>{measured_cone(shipped, false).value});
+  CHECK(rungs[climb.shipped].tries == std::vector<std::vector<double>>{cone_traced(scene, view, settings)});
+  CHECK(rungs.back().tries == std::vector<std::vector<double>>{cone_traced(scene, view, shipped_settings(options))});
   // Half floats change next to nothing; bytes clamp light above 1.
-  const auto& all = regions[0].pixels;
   CHECK(rung_step(rungs[7], rungs[8], all).square.root() < 1e-3 * mean(rungs[0]));
   CHECK(rung_step(rungs[8], rungs[9], all).bias.mean < 0.0);
   // True rays into voxels of 1/32 of the box: nearer to the truth than six cones are.
   CHECK(rung_step(rungs[0], rungs[2], all).square.root() <
         rung_step(rungs[0], rungs[climb.shipped], all).square.root());
+  // Nothing here is specular.
+  CHECK(rung_named(climb, "specular") == rungs.size());
 }
 
-TEST_CASE("Regions of a ladder are lit where light falls straight, also from glowing surfaces", "[ladder]") {
-  StudyScene scene{"lamp", cornell_box(CornellLight::area), {}};
-  scene.view.camera = scene.scene.cameras.at(0);
-  LadderOptions options;
-  options.resolution = 16;
-  options.width = 12;
-  options.tries = 2;
-  options.spp = 16;
-  options.marched_rays = options.voxel_rays = 4;
-  options.narrow_cones = 16;
-  options.published = false;
-  const Section section = ladder_section(scene, options, {}, {});
-  std::vector<std::string> regions;
-  for (size_t i = 0; i < section.tables[1].rows.size(); ++i)
-    regions.push_back(std::get<std::string>(section.tables[1].rows[i][0]));
-  CHECK(std::find(regions.begin(), regions.end(), "lit") != regions.end());
-  // A waterfall for each, and the chart of RMS changes.
-  CHECK(section.charts.size() == regions.size() + 1);
+TEST_CASE("In a closed furnace each rung of the ladder is its closed form", "[ladder]") {
+  // The sum of the rungs says nothing of those in between, which cancel in it: here each is known. Directions do not
+  // matter in a furnace, but every factor, bounce and term does.
+  constexpr double albedo = 0.5;
+  const StudyScene scene = seen_by_its_camera("furnace", furnace(float(albedo)));
+  const LadderClimb climb = climb_ladder(scene, sized(scene.view, 8), small_options(32), {});
+  REQUIRE(climb.rungs.size() == 10);
+  const int bounces = std::stoi(climb.rungs[1].name);
+  REQUIRE(bounces > 2);
+  const auto series = [&](int terms) { return (1.0 - std::pow(albedo, terms)) / (1.0 - albedo); };
+  const double truth = series(1000), bounced = series(bounces + 2);
+  double worst = 0.0;  // of rays into voxels that all hold the same
+  for (const auto& values : climb.rungs[2].tries)
+    for (const double value : values) worst = std::max(worst, std::abs(value / bounced - 1.0));
+  // 8192 paths that end by roulette: their sums scatter by about a half of the mean.
+  CHECK(mean(climb.rungs[0]) == Approx(truth).epsilon(0.02));
+  CHECK(mean(climb.rungs[1]) == Approx(bounced).epsilon(0.02));
+  CHECK(worst < 1e-5);
+  // The same light in every voxel: what cones lose is what leaks out of the box, at most 0.02 of a bounce (spec 5), and
+  // what one more bounce would bring.
+  for (size_t r = 3; r <= climb.shipped + 1; ++r) {
+    CAPTURE(climb.rungs[r].name, mean(climb.rungs[r]));
+    CHECK(mean(climb.rungs[r]) < bounced * (1.0 + 1e-3));
+    CHECK(mean(climb.rungs[r]) > bounced * (1.0 - 0.02 * albedo / (1.0 - albedo)));
+  }
+}
+
+TEST_CASE("Where nothing is reflected twice the ladder's rays find Lambert's irradiance", "[ladder]") {
+  const StudyScene scene = seen_by_its_camera("luminaire", rectangle_luminaire());
+  const View view = sized(scene.view, 24);
+  LadderOptions options = small_options(64);
+  options.spp = options.marched_rays = 256;
+  options.tries = 8;
+  const LadderClimb climb = climb_ladder(scene, view, options, {});
+  // The plane y = 0 of albedo 0.5 under a square of side 1 at height 1 that emits 1.
+  const std::array<glm::dvec3, 4> square = {{{-0.5, 1, -0.5}, {0.5, 1, -0.5}, {0.5, 1, 0.5}, {-0.5, 1, 0.5}}};
+  RungImage truth{"Lambert", {std::vector<double>(climb.rungs[0].tries[0].size(), 0.0)}};
+  std::vector<size_t> plane;
+  const Caster caster(scene.scene);
+  const std::vector<SeenPoint> seen = see(scene.scene, caster, view, {}, 0.01f);
+  for (size_t i = 0; i < seen.size(); ++i) {
+    if (!seen[i].surface || seen[i].point.position.y > 0.5f) continue;
+    plane.push_back(i);
+    truth.tries[0][i] =
+        0.5 * std::numbers::inv_pi * polygon_irradiance(square, glm::dvec3(seen[i].point.position), {0.0, 1.0, 0.0});
+  }
+  REQUIRE(plane.size() > 100);
+  double light = 0.0;
+  for (const size_t i : plane) light += truth.tries[0][i] / double(plane.size());
+  // Paths, and rays that look the voxels up: noise alone, and what the emitter's voxels add at its edges, where their
+  // rays end in a neighbour.
+  for (const size_t r : {rung_named(climb, "path tracer"), rung_named(climb, " bounces"),
+                         rung_named(climb, "radiance of voxels"), rung_named(climb, "cones at voxels")}) {
+    REQUIRE(r < climb.rungs.size());
+    const RungStep step = rung_step(truth, climb.rungs[r], plane);
+    CAPTURE(climb.rungs[r].name, step.bias.mean / light, step.bias.error / light, step.square.root() / light);
+    CHECK(std::abs(step.bias.mean) < 4.0 * step.bias.error + 1e-5 * light);
+    CHECK(step.bias.error < 0.005 * light);
+    CHECK(step.square.root(-3.0) == 0.0);
+  }
+}
+
+TEST_CASE("Specular light goes from rays to one cone in a rung of its own", "[ladder]") {
+  // Metal walls around a lamp: cones for diffuse light change nothing.
+  Scene room;
+  Material metal;
+  metal.metallic = 1.0f;
+  metal.roughness = 0.4f;
+  metal.base_color = {0.5f, 0.6f, 0.7f, 1.0f};
+  add_cube_interior(room, add_material(room, metal));
+  Light lamp;
+  lamp.intensity = glm::vec3(1.0f);
+  lamp.position = {0.3f, 0.2f, 0.1f};
+  room.lights.push_back(lamp);
+  StudyScene scene{"metal", room, view_from({0.2f, 0.1f, 0.5f}, {0.0f, 0.0f, -1.0f}, 8, 8, 1.5f)};
+  SECTION("metal alone") {
+    const LadderClimb climb = climb_ladder(scene, sized(scene.view, 8), small_options(24), {});
+    const size_t specular = rung_named(climb, "one specular cone"), narrow = rung_named(climb, "narrow cones"),
+                 wide = rung_named(climb, "wide cones");
+    REQUIRE(specular < climb.rungs.size());
+    CHECK(climb.rungs[specular - 1].name == "rays march voxels");
+    CHECK(narrow == specular + 1);
+    const std::vector<size_t> all = all_pixels(climb);
+    const double light = mean(climb.rungs[0]);
+    CHECK(rung_step(climb.rungs[specular - 1], climb.rungs[specular], all).square.root() > 0.01 * light);
+    for (size_t i = 0; i < all.size(); ++i) {  // float32 sums in another order
+      CHECK(climb.rungs[narrow].tries[0][i] == Approx(climb.rungs[specular].tries[0][i]).epsilon(1e-5));
+      CHECK(climb.rungs[wide].tries[0][i] == climb.rungs[narrow].tries[0][i]);
+    }
+  }
+  SECTION("beside diffuse light, which that rung leaves to rays") {
+    scene.scene.materials[0].metallic = 0.3f;
+    scene.scene.materials[0].roughness = 1.0f;
+    const LadderClimb climb = climb_ladder(scene, sized(scene.view, 8), small_options(24), {});
+    const size_t specular = rung_named(climb, "one specular cone");
+    REQUIRE(specular < climb.rungs.size());
+    CHECK(climb.rungs[specular].tries.size() == size_t(small_options(24).tries));
+    CHECK(climb.rungs[specular].tries[0] != climb.rungs[specular].tries[1]);
+  }
 }

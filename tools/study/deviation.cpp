@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/path.h"
+
 namespace voxref {
 
 double MeanSquare::root(double errors) const {
@@ -11,14 +13,15 @@ double MeanSquare::root(double errors) const {
   return moved < 0.0 ? 0.0 : std::sqrt(moved);  // std::max(0.0, NaN) would be 0, the best of all errors
 }
 
-MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances) {
+MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances, double freedom) {
   const auto count = static_cast<double>(differences.size());
+  const double over_v2 = 3.0 / (freedom + 2.0);  // (f - 1) / (f + 2) and (f + 1) / (f + 2), also where f is infinite
   double sum = 0.0, variance = 0.0, least = 0.0;
   for (size_t i = 0; i < differences.size(); ++i) {
     const double d2 = differences[i] * differences[i], v = variances[i];
     sum += d2 - v;
-    variance += 4.0 * d2 * v - 2.0 * v * v;
-    least += 2.0 * v * v;
+    variance += 4.0 * d2 * v - 2.0 * (1.0 - over_v2) * v * v;
+    least += 2.0 * (1.0 - over_v2 / 3.0) * v * v;
   }
   return {sum / count, std::sqrt(std::max(least, variance)) / count};
 }
@@ -38,7 +41,7 @@ Deviation deviation(const Measured& a, const Measured& b) {
     return {nonfinite, none, {none, none}};
   }
   const double mean = b.mean();
-  const MeanSquare square = mean_square(differences, variances);
+  const MeanSquare square = mean_square(differences, variances, PathOptions().randomizations - 1.0);
   return {
       0, relative(a.mean() - mean, mean), {relative(square.value, mean * mean), relative(square.error, mean * mean)}};
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <span>
 
 #include "compare/measured.h"
@@ -15,10 +16,15 @@ struct MeanSquare {
   double root_stderr() const { return 0.5 * (root(1.0) - root(-1.0)); }
 };
 
-/// Of differences d with independent noise of variance v each: mean(d^2 - v). Noise gives d^2 the variance
-/// 4 D^2 v + 2 v^2, D being the true difference, of which 4 d^2 v - 2 v^2 is an unbiased estimate,
-/// and 2 v^2 the least that it can be.
-MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances);
+/// Of differences d with independent, normally distributed noise whose variance is estimated as v with `freedom`
+/// degrees of freedom f: mean(d^2 - v). With D and V the true difference and variance, d^2 - v has the variance
+///
+///   4 D^2 V + 2 V^2 + 2 V^2 / f,        E(4 d^2 v) = 4 D^2 V + 4 V^2,        E(v^2) = V^2 (f + 2) / f,
+///
+/// so 4 d^2 v - 2 (f - 1) / (f + 2) v^2 is an unbiased estimate of it, and 2 (f + 1) / (f + 2) v^2 of the least that it
+/// can be, at D = 0. @param freedom infinite: the variances are known
+MeanSquare mean_square(std::span<const double> differences, std::span<const double> variances,
+                       double freedom = std::numeric_limits<double>::infinity());
 
 /// value / unit, but 0 of 0 is 0: black against black is no error.
 double relative(double value, double unit);
@@ -33,7 +39,8 @@ struct Deviation {
   double rel_error_stderr() const { return square.root_stderr(); }
 };
 
-/// 0 where both are black; infinite where b alone is.
+/// 0 where both are black; infinite where b alone is. Standard errors count as path_trace's, of its usual number of
+/// randomizations.
 Deviation deviation(const Measured& a, const Measured& b);
 
 }  // namespace voxref

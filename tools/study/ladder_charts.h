@@ -3,14 +3,12 @@
 
 namespace voxref {
 
-/// Mean over pixels and tries, radiance.
-double mean(const RungImage& image);
-
-/// Every rung against the one before, per region, and the ends against each other.
+/// Every rung against the one before and against the path tracer, per region, and the ends against each other.
 Table ladder_table(const StudyScene& scene, const LadderClimb& climb, const std::vector<Region>& regions);
 
-/// Waterfalls of signed bias, one per region, up to the published rungs and through those; and the RMS of each rung's
-/// own change, likewise.
-std::vector<Chart> ladder_charts(const StudyScene& scene, const LadderClimb& climb, const std::vector<Region>& regions);
+/// For each region a waterfall of signed bias with the RMS that has come together so far, up to the goal's parameters;
+/// and another of those and of what follows them. @param goal what the latter lead to
+std::vector<Chart> ladder_charts(const StudyScene& scene, const LadderClimb& climb, const std::vector<Region>& regions,
+                                 const std::string& goal);
 
 }  // namespace voxref

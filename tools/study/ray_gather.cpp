@@ -12,13 +12,15 @@
 #include "reference/sampler.h"
 #include "reference/warp.h"
 #include "scene/surface.h"
-#include "voxel/mipmap.h"
 
 namespace voxref {
 
 namespace {
 
 constexpr size_t grain = 64;  // pixels or voxels per task
+
+// Numbers of the randomizations (see randomization_key), so that pixels and voxels never share one.
+constexpr uint32_t of_pixels = 0, of_voxels = 1;
 
 /// Whether rays that rise gently all around meet something within `reach`.
 bool near_contact(const Caster& caster, const glm::vec3& position, const glm::vec3& normal, float reach) {
@@ -67,7 +69,7 @@ std::vector<glm::vec3> gather_rays(const std::vector<SeenPoint>& seen, const Vie
     for (size_t i = begin; i < end; ++i) {
       if (!seen[i].surface) continue;
       const Bsdf bsdf(seen[i].shading, seen[i].to_viewer);
-      const uint64_t key = randomization_key(seed, uint32_t(i % width), uint32_t(i / width), 0);
+      const uint64_t key = randomization_key(seed, uint32_t(i % width), uint32_t(i / width), of_pixels);
       glm::vec3 sum(0.0f);
       for (int r = 0; r < rays; ++r) {
         const Sampler sampler(key, uint32_t(r));
@@ -78,6 +80,18 @@ std::vector<glm::vec3> gather_rays(const std::vector<SeenPoint>& seen, const Vie
     }
   });
   return light;
+}
+
+std::vector<SeenPoint> without_specular(std::vector<SeenPoint> seen) {
+  for (SeenPoint& s : seen) s.shading.reflectance.specular_f0 = s.shading.reflectance.specular_f1 = glm::vec3(0.0f);
+  return seen;
+}
+
+BrickVolume<glm::vec4> voxel_volume(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance) {
+  BrickVolume<glm::vec4> volume(surfaces.grid.size);
+  volume.allocate(occupied_bricks(surfaces));
+  for (size_t i = 0; i < surfaces.size(); ++i) volume(surfaces.voxels[i]) = glm::vec4(radiance[i], 1.0f);
+  return volume;
 }
 
 glm::vec3 VoxelRadiance::at(const glm::vec3& position) const {
@@ -105,21 +119,22 @@ glm::vec3 VoxelRadiance::operator()(const GatherPoint& from, const glm::vec3& di
 
 std::vector<glm::vec3> bounce_by_rays(const SurfaceGrid& surfaces, const std::vector<glm::vec3>& direct,
                                       const Caster& caster, const glm::vec3& background, int count, int rays,
-                                      const Progress& progress) {
+                                      uint64_t seed, const Progress& progress) {
   std::vector<glm::vec3> radiance = direct;
   for (int b = 0; b < count; ++b) {
-    const Pyramid pyramid = mipmap(surfaces, radiance, {}, progress);
-    const VoxelRadiance incoming(caster, surfaces.grid, pyramid.base, background);
+    const BrickVolume<glm::vec4> volume = voxel_volume(surfaces, radiance);
+    const VoxelRadiance incoming(caster, surfaces.grid, volume, background);
     parallel_for(surfaces.size(), grain, [&](size_t begin, size_t end) {
       progress.check();
       for (size_t i = begin; i < end; ++i) {
         const float length = glm::length(surfaces.normal[i]);
         const glm::vec3 front = length > 0.0f ? surfaces.normal[i] / length : glm::vec3(0.0f, 1.0f, 0.0f);
         const bool both_sides = length < two_sided_length;
+        const uint64_t key = randomization_key(seed, uint32_t(i), uint32_t(b), of_voxels);
         glm::vec3 sum(0.0f);
         for (int r = 0; r < rays; ++r) {
           const glm::vec3 normal = both_sides && r % 2 == 1 ? -front : front;
-          const Sampler sampler(randomization_key(1, uint32_t(i), 0, uint32_t(b)), uint32_t(r));
+          const Sampler sampler(key, uint32_t(r));
           // Half a voxel off the surface, as shading's shadow rays.
           const glm::vec3 start = surfaces.centroid[i] + 0.5f * surfaces.grid.voxel * normal;
           sum += incoming({start, normal, normal, {}}, Frame(normal).to_world(cosine_hemisphere(sampler.get_2d(0))));

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "cone/gather.h"
@@ -28,9 +29,15 @@ std::vector<SeenPoint> see(const Scene& scene, const Caster& caster, const View&
 using IncomingRadiance = std::function<glm::vec3(const GatherPoint& from, const glm::vec3& direction)>;
 
 /// Light that the surface scatters towards the viewer, per pixel: mean over `rays` directions drawn from its BSDF.
-/// @param seed images of different seeds are independent
+/// @param seed images of different seeds are independent, also of bounce_by_rays
 std::vector<glm::vec3> gather_rays(const std::vector<SeenPoint>& seen, const View& view, int rays, uint64_t seed,
                                    const IncomingRadiance& incoming, const Progress& progress);
+
+/// The same surfaces with the diffuse part of their BSDF alone.
+std::vector<SeenPoint> without_specular(std::vector<SeenPoint> seen);
+
+/// What VoxelRadiance looks up. @param radiance one per occupied voxel, W/(sr m^2)
+BrickVolume<glm::vec4> voxel_volume(const SurfaceGrid& surfaces, std::span<const glm::vec3> radiance);
 
 /// Radiance of voxels, looked up where a true ray hits a triangle: in that voxel, or, where rounding puts the hit
 /// beyond its face, in the nearest occupied neighbour.
@@ -52,9 +59,11 @@ class VoxelRadiance {
 };
 
 /// Voxel radiance after `count` bounces, each gathered with true rays from the voxels' centroids and looked up in the
-/// voxels: what bounce() does with cones. One per occupied voxel.
+/// voxels: what bounce() does with cones. One per occupied voxel; right in the mean for any number of rays.
+/// @param rays per voxel and bounce, even: surfaces that show both sides divide them
+/// @param seed results of different seeds are independent, also of gather_rays
 std::vector<glm::vec3> bounce_by_rays(const SurfaceGrid& surfaces, const std::vector<glm::vec3>& direct,
                                       const Caster& caster, const glm::vec3& background, int count, int rays,
-                                      const Progress& progress);
+                                      uint64_t seed, const Progress& progress);
 
 }  // namespace voxref

@@ -2,13 +2,16 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "image/image.h"
 #include "progress.h"
 #include "scene/caster.h"
 #include "scene/scene.h"
+#include "settings.h"
 #include "study/chart.h"
 #include "study/table.h"
 
@@ -20,7 +23,8 @@ struct Section {
   std::string text;  ///< paragraphs, an empty line between them: what was done, what it shows
   std::vector<Table> tables;
   std::vector<Chart> charts;
-  double seconds = 0;  ///< that it took
+  std::vector<std::string> warnings{};  ///< what is wrong with its numbers
+  double seconds = 0;                   ///< that it took
 };
 
 struct StudyResult {
@@ -39,10 +43,11 @@ struct StudyScene {
 
 /// What a study is asked for.
 struct StudyRequest {
-  bool quick = false;               ///< small sizes: minutes instead of an hour
-  std::vector<StudyScene> scenes;   ///< for studies that take them; empty: the study's own
-  std::filesystem::path assets;     ///< folder that holds assets/, the larger public scenes; empty: there are none
-  std::filesystem::path gpu_image;  ///< a user's own rendering of the (single) scene for `ladder`; empty: none
+  bool quick = false;                ///< small sizes: minutes instead of an hour
+  std::vector<StudyScene> scenes;    ///< for studies that take them; empty: the study's own
+  std::filesystem::path assets;      ///< folder that holds assets/, the larger public scenes; empty: there are none
+  std::optional<Settings> settings;  ///< that `ladder` goes on to; none: the published ones
+  std::optional<Image> users_image;  ///< somebody else's rendering of the (single) scene, for `ladder`
   Progress progress;
 };
 
@@ -55,8 +60,8 @@ Section timed_section(const std::string& title, const std::function<void(Section
 struct Study {
   std::string name, sentence;
   StudyResult (*run)(const StudyRequest& request);
-  bool takes_scenes = false;     ///< in place of its own
-  bool takes_gpu_image = false;  ///< a user's own rendering
+  bool takes_scenes = false;    ///< in place of its own
+  bool takes_settings = false;  ///< and somebody else's rendering
 };
 
 /// All studies, in the order in which `all` runs them.

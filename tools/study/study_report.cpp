@@ -66,7 +66,10 @@ std::string figure_html(const fs::path& svg) {
 }
 
 std::string section_html(const Section& section, const fs::path& folder, bool charts) {
-  std::string html = "<h3>" + escape(section.title) + "</h3>\n" + paragraphs(section.text);
+  std::string html = "<h3>" + escape(section.title) + "</h3>\n";
+  for (const std::string& warning : section.warnings)
+    html += "<p><strong>Warning: " + escape(warning) + "</strong></p>\n";
+  html += paragraphs(section.text);
   for (const Chart& chart : section.charts)
     if (is_empty(chart))
       html += "<p>No chart \"" + escape(chart.title) + "\": it has no point to draw.</p>\n";
@@ -113,6 +116,7 @@ nlohmann::json study_result(std::span<const StudyResult> results, const nlohmann
                           {"text", section.text},
                           {"tables", tables},
                           {"charts", charts},
+                          {"warnings", section.warnings},
                           {"seconds", section.seconds}});
     }
     list.push_back({{"name", result.name},

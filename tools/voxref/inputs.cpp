@@ -49,15 +49,6 @@ Camera choose_camera(const ViewOptions& options, const Scene& scene) {
   return camera;
 }
 
-/// An image that cannot fit into the machine's memory is refused before the system ends the program for it.
-void require_memory(const View& view, size_t bytes_per_pixel) {
-  const double needed = static_cast<double>(bytes_per_pixel) * view.width * view.height;
-  const double installed = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  if (needed > installed)
-    throw Error("--size", fmt::format("{}x{} needs {:.0f} GiB of memory, the machine has {:.0f}", view.width,
-                                      view.height, std::ldexp(needed, -30), std::ldexp(installed, -30)));
-}
-
 }  // namespace
 
 Scene load_scene(const SceneOptions& options, Terminal& terminal) {
@@ -78,6 +69,14 @@ size_t path_bytes_per_pixel(const PathOptions& options) {
   return film + pass + image + extra_layer * options.extra.count();
 }
 
+void require_memory(const std::string& place, const View& view, size_t bytes_per_pixel) {
+  const double needed = static_cast<double>(bytes_per_pixel) * view.width * view.height;
+  const double installed = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed > installed)
+    throw Error(place, fmt::format("{}x{} needs {:.0f} GiB of memory, the machine has {:.0f}", view.width, view.height,
+                                   std::ldexp(needed, -30), std::ldexp(installed, -30)));
+}
+
 View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_pixel) {
   View view;
   view.camera = choose_camera(options, scene);
@@ -92,7 +91,7 @@ View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_
     view.width = static_cast<int>(usual_width);
     view.height = static_cast<int>(height);
   }
-  require_memory(view, bytes_per_pixel);
+  require_memory("--size", view, bytes_per_pixel);
   return view;
 }
 

@@ -12,6 +12,9 @@ Scene load_scene(const SceneOptions& options, Terminal& terminal);
 /// The camera that was asked for, else the scene's first, else one that frames the scene. @throws Error, also when the
 /// machine has less memory than an image of `bytes_per_pixel` needs
 View make_view(const ViewOptions& options, const Scene& scene, size_t bytes_per_pixel);
+/// An image that cannot fit into the machine's memory is refused before the system ends the program for it.
+/// @param place what gave the size, for the message @throws Error
+void require_memory(const std::string& place, const View& view, size_t bytes_per_pixel);
 /// The most memory that a renderer holds at once, from its image's first pixel to the written file.
 size_t path_bytes_per_pixel(const PathOptions& options);
 /// The image, and its copy in the order of the file.

@@ -60,6 +60,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
   command.add_option("SCENE", options.file, "glTF 2.0 file, .gltf or .glb")->required()->type_name("");
+  add_loading_options(command, options);
+}
+
+void add_loading_options(CLI::App& command, SceneOptions& options) {
   add_number(command, "--light-scale", "S", "multiplies all lights and all emission", 0, largest,
              options.load.light_scale);
   add_value_option(command, "--at", "T", "the animation's time in seconds (default: animations are ignored)",
@@ -81,6 +85,16 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 void add_view_options(CLI::App& command, ViewOptions& options) {
   add_value_option(command, "--size", "WxH", "image size (default: 512 wide, the camera's aspect)",
                    [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_camera_options(command, options);
+  add_value_option(command, "--pixel", "center|box", "one position per pixel, as a GPU renders (default), or its mean",
+                   [&options](const std::string& text) {
+                     if (text != "center" && text != "box")
+                       throw Error("--pixel", "'" + text + "' is not center or box");
+                     options.pixel = text == "box" ? PixelSampling::box : PixelSampling::center;
+                   });
+}
+
+void add_camera_options(CLI::App& command, ViewOptions& options) {
   add_value_option(command, "--camera", "NAME|INDEX", "one of the scene's cameras (default: the first)",
                    [&options](const std::string& text) { options.camera = text; });
   add_vector(command, "--eye", "X,Y,Z", "camera position, world units", -largest, options.eye);
@@ -88,12 +102,6 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
   add_vector(command, "--up", "X,Y,Z", "the image's upward direction (default: 0,1,0)", -largest, options.up);
   add_number(command, "--yfov", "DEG", "vertical field of view (default: the camera's, or 45)", 0.01, 179,
              options.yfov);
-  add_value_option(command, "--pixel", "center|box", "one position per pixel, as a GPU renders (default), or its mean",
-                   [&options](const std::string& text) {
-                     if (text != "center" && text != "box")
-                       throw Error("--pixel", "'" + text + "' is not center or box");
-                     options.pixel = text == "box" ? PixelSampling::box : PixelSampling::center;
-                   });
   add_vector(command, "--background", "R,G,B", "constant radiance from outside (default: 0,0,0)", 0,
              options.background);
 }

@@ -60,9 +60,14 @@ struct ConeCommandOptions : RenderCommandOptions {
 };
 
 void add_common_options(CLI::App& command, CommonOptions& options);
-/// The positional SCENE and what changes the scene as it is loaded.
+/// The positional SCENE and add_loading_options.
 void add_scene_options(CLI::App& command, SceneOptions& options);
+/// What changes a scene as it is loaded.
+void add_loading_options(CLI::App& command, SceneOptions& options);
+/// The image's size and sampling, and add_camera_options.
 void add_view_options(CLI::App& command, ViewOptions& options);
+/// The camera and what surrounds the scene.
+void add_camera_options(CLI::App& command, ViewOptions& options);
 void add_path_options(CLI::App& command, PathOptions& options);
 void add_settings_options(CLI::App& command, SettingsOptions& options);
 /// All of RenderCommandOptions; in the help, what `add_own` adds stands behind SCENE and -o. @param what,help of -o
