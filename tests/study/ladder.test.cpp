@@ -87,10 +87,13 @@ TEST_CASE("In a closed furnace each rung of the ladder is its closed form", "[la
     for (const double value : values) worst = std::max(worst, std::abs(value / bounced - 1.0));
   // 8192 paths that end by roulette: their sums scatter by about a half of the mean.
   CHECK(mean(climb.rungs[0]) == Approx(truth).epsilon(0.02));
-  CHECK(mean(climb.rungs[1]) == Approx(bounced).epsilon(0.02));
+  // What longer paths bring is the rest of the series, which both images' paths show without that scatter.
+  const Estimate rest = rung_step(climb.rungs[0], climb.rungs[1], all_pixels(climb)).bias;
+  CAPTURE(rest.mean, rest.error, truth - bounced);
+  CHECK(rest.error < 0.15 * (truth - bounced));  // one bounce more or less would be a factor of 2
+  CHECK(student_tail((rest.mean + (truth - bounced)) / rest.error, rest.freedom) > 1e-3);
   CHECK(worst < 1e-5);
-  // The same light in every voxel: what cones lose is what leaks out of the box, at most 0.02 of a bounce (spec 5), and
-  // what one more bounce would bring.
+  // The same light in every voxel: what cones lose is what leaks out of the box, at most 0.02 of each bounce (spec 5).
   for (size_t r = 3; r <= climb.shipped + 1; ++r) {
     CAPTURE(climb.rungs[r].name, mean(climb.rungs[r]));
     CHECK(mean(climb.rungs[r]) < bounced * (1.0 + 1e-3));

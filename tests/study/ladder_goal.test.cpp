@@ -46,7 +46,7 @@ TEST_CASE("A ladder's last rung is cone_trace with the goal's settings, one para
     if (parameter.get(goal) != parameter.get(shipped_settings(options))) different.push_back(parameter.key);
   for (size_t r = climb.first_parameter; r < climb.rungs.size(); ++r)
     found.push_back(climb.rungs[r].name.substr(0, climb.rungs[r].name.find(' ')));
-  CHECK(found == different);
+  CHECK(std::is_permutation(found.begin(), found.end(), different.begin(), different.end()));
   CHECK(shipped_settings(options).storage == goal.storage);
   CHECK(climb.rungs[climb.first_parameter - 1].tries ==
         std::vector<std::vector<double>>{cone_traced(scene, view, shipped_settings(options))});
@@ -74,14 +74,13 @@ TEST_CASE("From the published shaders' settings it is next to nothing to their i
     // All stages are ours here, from triangles on: some pixels at silhouettes and thresholds of shadow cones differ.
     const auto [bias, rms] = gap(goal);
     CAPTURE(name, bias, rms);
-    CHECK(bias < 1e-4);
-    CHECK(rms < 0.005);
-    // With one parameter beside the shaders' own it would not be so.
-    goal.bounce.max_distance = 0.9f * *goal.bounce.max_distance;
-    const auto [other_bias, other_rms] = gap(goal);
-    CAPTURE(other_bias, other_rms);
+    CHECK(bias < 1e-4);  // 6e-6 and 1.2e-5
+    CHECK(rms < 2e-3);   // 7e-4 and 3e-4
+    // With one parameter beside the shaders' own it would not be so: here light fades by some 0.5 % more.
+    goal.light.attenuation.x += 0.02f;
+    const double other_bias = gap(goal).first;
+    CAPTURE(other_bias);
     CHECK(other_bias > 1e-3);
-    CHECK(other_rms > 0.01);
   }
 }
 
@@ -152,7 +151,7 @@ TEST_CASE("Regions of a ladder are lit where light falls straight, also from glo
   for (size_t i = 0; i < section.tables[1].rows.size(); ++i)
     regions.push_back(std::get<std::string>(section.tables[1].rows[i][0]));
   CHECK(std::find(regions.begin(), regions.end(), "lit") != regions.end());
-  CHECK(section.charts.size() == regions.size());
+  CHECK(section.charts.size() == regions.size() + 1);  // of bias each, of RMS together
   CHECK(section.text.find("The shipped settings at 16 voxels, not their own 256,") != std::string::npos);
 }
 

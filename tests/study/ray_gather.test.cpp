@@ -167,7 +167,7 @@ TEST_CASE("Bounces by rays in a closed furnace are the geometric series, for any
   Scene scene;
   add_cube_interior(scene, add_material(scene, lambert(glm::vec3(albedo), glm::vec3(1.0f))));
   const Caster caster(scene);
-  const SurfaceGrid surfaces = voxels_of(scene, 12);
+  const SurfaceGrid surfaces = voxels_of(scene, 16);
   const std::vector<glm::vec3> direct(surfaces.size(), glm::vec3(1.0f));
   for (const int count : {0, 1, 4}) {
     const double truth = (1.0 - std::pow(albedo, count + 1)) / (1.0 - albedo);

@@ -25,7 +25,7 @@ StudyResult small_study() {
   table.add({1.5});
   return {"small",
           "a study",
-          {{"part", "One.\n\nTwo < three.", {table}, {one_point()}, 0.1}},
+          {{"part", "One.\n\nTwo < three.", {table}, {one_point()}, 0.1, {"a rung is not finite"}}},
           {"sponza: absent"},
           "voxref study small -o out"};
 }
@@ -47,7 +47,7 @@ TEST_CASE("A study without gnuplot writes its data and a page that says so", "[s
   CHECK(read_file(folder.path / "numbers.csv") == "# voxref study small -o out  (0.1 s)\nx [m]\n1.5\n");
   const std::string page = read_file(folder.path / "report.html");
   for (const char* part : {"voxref study all", "voxref study small", "gnuplot is not installed", "Two &lt; three.",
-                           "sponza: absent", "1.5"})
+                           "sponza: absent", "1.5", "Warning: a rung is not finite"})
     CHECK(contains(page, part));
   CHECK(nlohmann::json::parse(read_file(folder.path / "result.json"))["studies"][0]["name"] == "small");
   CHECK(!std::filesystem::exists(folder.path / "two.svg"));

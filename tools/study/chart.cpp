@@ -160,7 +160,7 @@ std::vector<std::string> plots(const Chart& chart, size_t index) {
       add(columns, (axes.empty() ? "linespoints" : axes + "lines") + " lw 1.5 " + symbol);
       break;
     case ChartStyle::bars:
-      add("1:(0.5*($2+$6)):(0.3):(0.5*abs($2-$6))", "boxxyerror fs solid 0.75");
+      add(fmt::format("1:(0.5*($2+$6)):({}):(0.5*abs($2-$6))", 0.5 * series.width), "boxxyerror fs solid 0.75");
       break;
   }
   if (bars && errors)

@@ -39,6 +39,7 @@ struct Series {
   ChartStyle style = ChartStyle::points;
   std::vector<ChartPoint> points{};  ///< those that are not finite are left out
   std::string color_of{};  ///< title of the series whose colour this one shares: theory beside its measurement
+  double width = 0.6;      ///< of bars, in units of x
 };
 
 /// A dashed vertical line: where something begins or ends.

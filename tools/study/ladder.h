@@ -66,8 +66,8 @@ struct LadderClimb {
   std::vector<std::string> warnings;  ///< light that was not finite and that rungs therefore lack
 };
 /// The rungs from the path tracer to the shipped settings, down to the goal's storage, and on to the goal, parameter by
-/// parameter in the order of parameters(): each is different from the one before in one thing. All light (R,G,B) at the
-/// pixels' centres. @throws Interrupted
+/// parameter (in the order of parameters(), but fewer bounces first): each is different from the one before in one
+/// thing. All light (R,G,B) at the pixels' centres. @throws Interrupted
 LadderClimb climb_ladder(const StudyScene& scene, const View& view, const LadderOptions& options,
                          const Progress& progress);
 

@@ -33,63 +33,69 @@ std::vector<size_t> changing(const Stretch& stretch, const Region& region) {
   return found;
 }
 
-/// Adds one category after the other to a waterfall.
-class Waterfall {
- public:
-  Waterfall(const Stretch& stretch, const Region& region) : stretch_(stretch), region_(region) {
-    const bool whole = region.name == "whole";
-    chart_ = {"ladder_" + stretch.name + "_" + region.name + "_" + stretch.scene.name,
-              stretch.scene.name + (whole ? "" : ", " + region.name) + ": " + stretch.title,
+/// A number over a bar, with as many digits as there is room for.
+std::string bar_label(double value, bool narrow) {
+  const double size = std::abs(value);
+  return fmt::format("{:+.{}f}", value, size >= 1000.0 ? 0 : narrow || size >= 100.0 ? 1 : 2);
+}
+
+/// Bars of bias that hang on each other from where the stretch begins; too bright, too dark, and the sums.
+Chart bias_waterfall(const Stretch& stretch, const Region& region) {
+  const bool whole = region.name == "whole";
+  Chart chart{"ladder_" + stretch.name + "_" + region.name + "_" + stretch.scene.name,
+              stretch.scene.name + (whole ? "" : ", " + region.name) + ": bias " + stretch.title,
               {""},
-              {"% of the path-traced mean"},
-              {{"brighter", ChartStyle::bars},
-               {"darker", ChartStyle::bars},
-               {"bias so far", ChartStyle::bars},
-               {"RMS difference from the path tracer so far", ChartStyle::line_points}}};
+              {"bias / % of the path-traced mean"},
+              {{"brighter", ChartStyle::bars}, {"darker", ChartStyle::bars}, {"sum", ChartStyle::bars}}};
+  const double percent = stretch.percent();
+  const auto add = [&](size_t series, const std::string& name, const Estimate& bias, double base) {
+    const auto x = double(chart.x.categories.size());
+    const double value = percent * bias.mean;
+    ChartPoint point{x, base + value, percent * bias.error, bar_label(value, stretch.end - stretch.begin > 14), base};
+    if (!std::isfinite(point.y)) point = {x, 0.0, 0.0, "not finite"};  // the chart would leave it out
+    chart.series[series].points.push_back(point);
+    chart.x.categories.push_back(name);
+  };
+  const auto to = [&](size_t r) { return rung_step(stretch.rung(0), stretch.rung(r), region.pixels).bias; };
+  if (stretch.begin > 1) add(2, stretch.rung(stretch.begin - 1).name, to(stretch.begin - 1), 0.0);
+  for (const size_t r : changing(stretch, region)) {
+    const Estimate bias = rung_step(stretch.rung(r - 1), stretch.rung(r), region.pixels).bias;
+    add(bias.mean < 0.0 ? 1 : 0, stretch.rung(r).name, bias, percent * to(r - 1).mean);
   }
+  add(2, "sum", to(stretch.end - 1), 0.0);
+  return chart;
+}
 
-  /// What separates rung r from the one before.
-  void add_step(size_t r) {
-    const Estimate bias = rung_step(stretch_.rung(r - 1), stretch_.rung(r), region_.pixels).bias;
-    add(bias.mean < 0.0 ? 1 : 0, r, stretch_.rung(r).name, bias, stretch_.percent() * to(r - 1).bias.mean);
-  }
-  /// What separates rung r from the path tracer.
-  void add_sum(size_t r, const std::string& name) { add(2, r, name, to(r).bias, 0.0); }
-
-  Chart chart() && { return std::move(chart_); }
-
- private:
-  RungStep to(size_t r) const { return rung_step(stretch_.rung(0), stretch_.rung(r), region_.pixels); }
-
-  void add(size_t series, size_t r, const std::string& name, const Estimate& bias, double base) {
-    const auto x = double(chart_.x.categories.size());
-    const double percent = stretch_.percent(), value = percent * bias.mean;
-    chart_.x.categories.push_back(name);
-    if (!std::isfinite(base + value)) {  // the chart would leave it out
-      chart_.series[series].points.push_back({x, 0.0, 0.0, "not finite"});
-      return;
+/// RMS difference from the path tracer: for each region, side by side, bars from what it was to what it is. In the
+/// goal's parameters, whose units may not be W/(sr m^2), on a logarithmic axis.
+Chart rms_waterfall(const Stretch& stretch, const std::vector<Region>& regions) {
+  const bool from_start = stretch.begin == 1;
+  Chart chart{"ladder_" + stretch.name + "_rms_" + stretch.scene.name,
+              stretch.scene.name + ": RMS difference " + stretch.title,
+              {""},
+              {"RMS difference from the path tracer / % of its mean", !from_start}};
+  const double percent = stretch.percent();
+  std::vector<size_t> shown = changing(stretch, regions[0]);
+  if (!from_start) shown.insert(shown.begin(), stretch.begin - 1);
+  for (const size_t r : shown) chart.x.categories.push_back(stretch.rung(r).name);
+  const double width = 0.8 / double(regions.size());
+  for (size_t k = 0; k < regions.size(); ++k) {
+    Series series{regions[k].name, ChartStyle::bars, {}, {}, width};
+    const double beside = width * (double(k) - 0.5 * double(regions.size() - 1));
+    double before = 0.0;
+    for (size_t i = 0; i < shown.size(); ++i) {
+      const MeanSquare square = rung_step(stretch.rung(0), stretch.rung(shown[i]), regions[k].pixels).square;
+      ChartPoint point{double(i) + beside, percent * square.root()};
+      point.base = i == 0 && !from_start ? point.y : before;
+      point.y_bar = Interval{percent * square.root(-1.0), percent * square.root(1.0)};
+      before = point.y;
+      if (!std::isfinite(point.y)) point = {point.x, from_start ? 0.0 : 1.0, 0.0, "not finite"};
+      if (!std::isfinite(point.base)) point.base = point.y;
+      series.points.push_back(point);
     }
-    const int digits = stretch_.end - stretch_.begin > 14 ? 1 : 2;  // as many as there is room for
-    chart_.series[series].points.push_back(
-        {x, base + value, percent * bias.error, fmt::format("{:+.{}f}", value, digits), base});
-    const MeanSquare square = to(r).square;
-    ChartPoint rms{x, percent * square.root()};
-    rms.y_bar = Interval{percent * square.root(-1.0), percent * square.root(1.0)};
-    chart_.series[3].points.push_back(rms);
+    chart.series.push_back(std::move(series));
   }
-
-  const Stretch& stretch_;
-  const Region& region_;
-  Chart chart_;
-};
-
-/// Bars that hang on each other from where the stretch begins; too bright, too dark, and the sums.
-Chart waterfall(const Stretch& stretch, const Region& region) {
-  Waterfall fall(stretch, region);
-  if (stretch.begin > 1) fall.add_sum(stretch.begin - 1, stretch.rung(stretch.begin - 1).name);
-  for (const size_t r : changing(stretch, region)) fall.add_step(r);
-  fall.add_sum(stretch.end - 1, "sum");
-  return std::move(fall).chart();
+  return chart;
 }
 
 }  // namespace
@@ -125,13 +131,15 @@ Table ladder_table(const StudyScene& scene, const LadderClimb& climb, const std:
 
 std::vector<Chart> ladder_charts(const StudyScene& scene, const LadderClimb& climb, const std::vector<Region>& regions,
                                  const std::string& goal) {
-  std::vector<Stretch> stretches = {{scene, climb, 1, climb.first_parameter, "method", "what each approximation adds"}};
+  std::vector<Stretch> stretches = {{scene, climb, 1, climb.first_parameter, "method", "of each approximation"}};
   if (climb.rungs.size() > climb.first_parameter)
-    stretches.push_back(
-        {scene, climb, climb.first_parameter, climb.rungs.size(), "parameters", "from the method to " + goal});
+    stretches.push_back({scene, climb, climb.first_parameter, climb.rungs.size(), "parameters",
+                         "on the way from the method to " + goal});
   std::vector<Chart> charts;
-  for (const Stretch& stretch : stretches)
-    for (const Region& region : regions) charts.push_back(waterfall(stretch, region));
+  for (const Stretch& stretch : stretches) {
+    for (const Region& region : regions) charts.push_back(bias_waterfall(stretch, region));
+    charts.push_back(rms_waterfall(stretch, regions));
+  }
   return charts;
 }
 

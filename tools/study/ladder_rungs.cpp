@@ -18,7 +18,9 @@ namespace voxref {
 
 namespace {
 
-constexpr float fine_step = 0.1f;  // texels
+// Texels. Against an eighth of it, light changes by 0.003 % RMS of its mean on the Cornell box at 64 voxels, by 0.03 %
+// on Sponza at 256; half of it would leave 0.001 and 0.01 %.
+constexpr float fine_step = 0.1f;
 
 class Ladder {
  public:
@@ -33,6 +35,7 @@ class Ladder {
     const SurfaceGrid surfaces =
         voxelize(scene_, fit_grid(scene_.bounds(), shipped_.grid), shipped_.voxelize, progress_);
     const LitVoxels lit = light_voxels(scene_, caster_, surfaces, view_.background, shipped_, nullptr, progress_);
+    bounces_ = lit.bounces;
     if (lit.nonfinite.count > 0)
       climb_.warnings.push_back(fmt::format("{} voxels are not lit by a finite number", lit.nonfinite.count));
     const Image narrow = image_with_cones(options_.narrow_cones, lit);
@@ -154,17 +157,24 @@ class Ladder {
     }
   }
 
-  /// Every parameter that the goal sets otherwise, in the table's order, one by one.
+  /// Every parameter that the goal sets otherwise, one by one, as `in_order` has them.
   void add_parameters(const Settings& goal) {
     ConeRunner runner(scene_, caster_, view_, progress_);
     Settings settings = shipped_settings(options_);
-    for (const Parameter& parameter : parameters()) {
+    for (const Parameter& parameter : in_order(goal)) {
       const nlohmann::json value = parameter.get(goal);
       if (value == parameter.get(settings)) continue;
       parameter.set(settings, value);
       add_cone_image(parameter.key + " = " + (value.is_string() ? value.get<std::string>() : value.dump()),
                      runner(settings).image.image);
     }
+  }
+  /// The table's order; but bounces, which take most of the time, go first where the goal has fewer.
+  std::vector<Parameter> in_order(const Settings& goal) const {
+    std::vector<Parameter> order = parameters();
+    if (goal.bounce.count && *goal.bounce.count < bounces_)
+      std::stable_partition(order.begin(), order.end(), [](const Parameter& p) { return p.key == "bounce.count"; });
+    return order;
   }
 
   const Scene& scene_;
@@ -173,6 +183,7 @@ class Ladder {
   Progress progress_;
   Caster caster_;
   Settings shipped_;
+  int bounces_ = 0;  // that the shipped settings make here
   LadderClimb climb_;
 };
 

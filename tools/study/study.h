@@ -23,8 +23,8 @@ struct Section {
   std::string text;  ///< paragraphs, an empty line between them: what was done, what it shows
   std::vector<Table> tables;
   std::vector<Chart> charts;
-  std::vector<std::string> warnings{};  ///< what is wrong with its numbers
   double seconds = 0;                   ///< that it took
+  std::vector<std::string> warnings{};  ///< what is wrong with its numbers
 };
 
 struct StudyResult {
