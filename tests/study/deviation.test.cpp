@@ -88,7 +88,9 @@ TEST_CASE("The error of a mean square counts that few tries know its noise rough
       CHECK(std::abs(value.mean - truth * truth) < 4.0 * value.error);
       // The variance of 4000 draws is known to 2.2 %; taking the noise for known leaves out 6 / (tries - 1) of 2 or
       // more.
-      CHECK(squared_bar == Approx(scatter).epsilon(0.09));
+      CHECK(squared_bar > 0.91 * scatter);
+      // Without a difference it cannot fall below the least that it can be, but above it: 5 to 13 % in the mean.
+      CHECK(squared_bar < (truth == 0.0 ? 1.2 : 1.09) * scatter);
     }
 }
 
