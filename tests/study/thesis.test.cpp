@@ -248,6 +248,11 @@ TEST_CASE("The study of the thesis has every table and figure, with the publishe
         std::set<std::string>{"step 0.25", "step 0.5", "step 1", "step 2.5"});
   CHECK(words(table_of(result, "thesis_emission"), "scene") ==
         std::set<std::string>{"teapot", "colored_cornell_box", "two_emitters"});
+  const Table& by_cones = table_of(result, "thesis_emission_cones");
+  CHECK(by_cones.rows.size() == 3 * 3);  // scenes, numbers of cones
+  for (const Chart& chart : section_with(result, "thesis_emission_cones").charts)
+    for (const Series& series : chart.series)
+      for (const ChartPoint& point : series.points) CHECK(point.x <= (chart.x.title[0] == 'c' ? 128.0 : 64.0));
   const Table& memory = table_of(result, "thesis_memory");
   CHECK(words(memory, "scene") == std::set<std::string>{"cornell_box", "cornell_box_empty", "light_box", "plane_test"});
 }

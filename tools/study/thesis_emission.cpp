@@ -57,8 +57,8 @@ struct EmissionCurves {
                {"rel_error_stderr", ""},
                {"colorfulness", ""},
                {"colorfulness_true", ""}}},
-        light{name, title + " against the path tracer", axis, {"cone traced / path traced mean", false, 0.0}},
-        error{name + "_error", "Error: " + title, axis, {"RMS error / path traced mean", false, 0.0}} {}
+        light{name, title, axis, {"cone traced / path traced mean", false, 0.0}},
+        error{name + "_error", title + ": error", axis, {"RMS error / path traced mean", false, 0.0}} {}
 
   void begin(const std::string& scene) {
     for (Chart* chart : {&light, &error}) chart->series.push_back({scene, ChartStyle::line_points});
@@ -105,11 +105,11 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
   return timed_section("Figures 4.33 to 4.35: emissive objects and no lamp", [&](Section& section) {
     EmissionCurves by_voxels("thesis_emission",
                              "What emissive objects bring to their neighbours, against the path tracer", "voxels",
-                             {"voxels along the longest side", true}, "light of emissive objects");
+                             {"voxels along the longest side", true}, "Light of emissive objects by resolution");
     EmissionCurves by_cones(
         "thesis_emission_cones",
         fmt::format("The same at {} voxels by the number of cones, in a picture half as wide", sizes.base), "cones",
-        {"cones at a pixel", true}, "light of emissive objects by cones");
+        {"cones at a pixel", true}, "Light of emissive objects by the number of cones");
     constexpr std::array cone_counts = {6, 32, 128};
     std::vector<bool> finer, more_cones;
     for (const StudyScene& scene : glowing) {
@@ -141,7 +141,7 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
     }
     const double finest = sizes.resolutions.back(), many = cone_counts.back();
     by_voxels.end(sizes.resolutions.front(), finest);
-    by_cones.end(cone_counts.front(), most_cones);
+    by_cones.end(cone_counts.front(), many);
     const auto apart = [&](double cones) {
       return finding("Colours are further apart than in truth", too_apart(by_cones.table, cones), "coloured scenes");
     };
