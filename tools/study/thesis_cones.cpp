@@ -31,9 +31,10 @@ double fixed_share(double at_0_10, double at_0_50) {
   return 1.0 - b / 0.5 / at_0_50;
 }
 
-/// "20 to 30 %", in rising order.
-std::string percent_range(std::vector<double> shares) {
-  const Spread all = spread(std::move(shares));
+/// "20 to 30 %" in rising order, or "20 %" of one.
+std::string percent_range(const std::vector<double>& shares) {
+  const Spread all = spread(shares);
+  if (shares.size() == 1) return fmt::format("{:.0f} %", 100.0 * all.median);
   return fmt::format("{:.0f} to {:.0f} %", 100.0 * all.least, 100.0 * all.greatest);
 }
 
