@@ -40,9 +40,10 @@ TEST_CASE("The ladder's ends, rendered anew, are apart by what its rungs add up 
   CHECK(climb.shipped == 7);
   CHECK(climb.first_parameter == rungs.size());
   CHECK(climb.warnings.empty());
+  std::vector<std::string> warnings;
   const std::vector<size_t> all = all_pixels(climb);
   const std::vector<Region> regions = {{"whole", all}, {"top", {all.begin(), all.begin() + 128}}};
-  const Table closed = closure(scene, view, options, climb, regions, {});
+  const Table closed = closure(scene, view, options, climb, regions, warnings, {});
   REQUIRE(closed.rows.size() == 2);
   for (size_t k = 0; k < 2; ++k) {
     CAPTURE(closed.number(k, "gap"), closed.number(k, "gap_stderr"));
@@ -54,7 +55,7 @@ TEST_CASE("The ladder's ends, rendered anew, are apart by what its rungs add up 
     LadderClimb broken = climb;
     for (auto& values : broken.rungs[end].tries)
       for (double& value : values) value *= 1.1;
-    CHECK(closure(scene, view, options, broken, regions, {}).number(0, "p") < 0.01);
+    CHECK(closure(scene, view, options, broken, regions, warnings, {}).number(0, "p") < 0.01);
   }
 
   Settings settings;

@@ -119,6 +119,21 @@ TEST_CASE("A ladder of a scene in which nothing is lit says so", "[ladder]") {
   CHECK(section.text.starts_with("Nothing in this image is lit"));
   CHECK(section.tables.empty());
   CHECK(section.charts.empty());
+  CHECK(section.warnings.empty());
+  // Light that is no number is missing too, which is not the same as none.
+  scene.view.background = glm::vec3(std::nanf(""));
+  CHECK(!ladder_section(scene, small_options(16), {}, {}).warnings.empty());
+}
+
+TEST_CASE("A ladder of lamps and things that glow says where their bounces differ", "[ladder]") {
+  StudyScene scene = cornell_point_scene();
+  const auto tells = [&] {
+    const std::string text = ladder_section(scene, small_options(16), {}, {}).text;
+    return text.find("what glows") != std::string::npos;
+  };
+  CHECK(!tells());
+  scene.scene.materials[0].emission = glm::vec3(0.1f);
+  CHECK(tells());
 }
 
 TEST_CASE("Files of two scenes' ladders never share a name", "[ladder]") {

@@ -35,7 +35,7 @@ std::vector<Region> find_regions(const StudyScene& scene, const View& view, cons
 
 /// What is not finite, in a sentence each.
 std::vector<std::string> find_nonfinite(const LadderClimb& climb, const View& view) {
-  std::vector<std::string> found = climb.warnings;
+  std::vector<std::string> found;
   const auto width = static_cast<size_t>(view.width);
   for (const RungImage& rung : climb.rungs) {
     size_t count = 0, first = 0;
@@ -56,9 +56,8 @@ std::string about_users_image(const LadderOptions& options, const LadderClimb& c
   const double percent = 100.0 / mean(ours);
   const RungStep gap = rung_step(ours, users, whole.pixels);
   return fmt::format(
-      "\n\nYour image differs from the cone-traced one of {} by {:+.3f} % of that one's mean, and {:.3f} % RMS: what "
-      "no "
-      "parameter explains.",
+      "\n\nYour image differs from the cone-traced one of {} by {:+.3f} % of that one's mean, and {:.3f} % RMS: "
+      "what no parameter explains.",
       options.goal ? options.goal->name : "the shipped settings in bytes", percent * gap.bias.mean,
       percent * gap.square.root());
 }
@@ -77,8 +76,8 @@ std::string findings(const LadderOptions& options, const View& view, const Ladde
       "independent tries.\n\n"
       "{} are {:+.2f} +- {:.2f} % from the path tracer in the mean, and {:.2f} +- {:.2f} % RMS.\n\n"
       "Does the ladder close? Down to their storage in {} the rungs add up to {:+.2f} %; both ends rendered anew, "
-      "paths "
-      "with another seed, differ by {:+.2f} %: a gap of {:+.2f} +- {:.2f} %, which chance exceeds with probability "
+      "paths with another seed, differ by {:+.2f} %: a gap of {:+.2f} +- {:.2f} %, which chance exceeds with "
+      "probability "
       "{:.2g}.",
       view.width, view.height, options.resolution, options.tries, at, percent * shipped.bias.mean,
       percent * shipped.bias.error, percent * shipped.square.root(), percent * shipped.square.root_stderr(),
@@ -122,18 +121,26 @@ Section ladder_section(const StudyScene& scene, const LadderOptions& options, co
       view.height = users->height();
     }
     LadderClimb climb = climb_ladder(scene, view, options, progress);
+    section.warnings = climb.warnings;
     if (climb.rungs.size() == 1) {
       section.text =
           "Nothing in this image is lit: paths find no light, so that there is no mean that errors could be shares of.";
       return;
     }
     if (users) climb.rungs.push_back({"your image", {measured_cone(*users, false).value}});
-    section.warnings = find_nonfinite(climb, view);
+    for (std::string& warning : find_nonfinite(climb, view)) section.warnings.push_back(std::move(warning));
     const std::vector<Region> regions = find_regions(scene, view, options, climb.direct);
-    section.tables = {ladder_table(scene, climb, regions), closure(scene, view, options, climb, regions, progress)};
+    section.tables = {ladder_table(scene, climb, regions),
+                      closure(scene, view, options, climb, regions, section.warnings, progress)};
     const std::string goal = options.goal ? options.goal->name : "the shipped settings";
     section.charts = ladder_charts(scene, climb, regions, users ? "your image" : goal);
     section.text = findings(options, view, climb, regions[0], section.tables.back());
+    if (!scene.scene.lights.empty() && (scene.scene.has_emission() || view.background != glm::vec3(0.0f)))
+      section.text +=
+          "\n\nBounces are counted for the lamps, whose light voxels hold from the first. Light of what glows and of "
+          "the "
+          "surroundings has one more in the paths of the second rung than in the voxels: that one is part of the "
+          "third.";
     if (users) section.text += about_users_image(options, climb, regions[0]);
   });
 }

@@ -74,8 +74,9 @@ LadderClimb climb_ladder(const StudyScene& scene, const View& view, const Ladder
 /// Whether the rungs before the goal's parameters, added up, are what separates their ends: both are rendered anew, the
 /// path-traced one with another seed. A row per region; `p` is the probability of a gap at least as large by chance.
 /// The rungs in between cancel in the sum: whether each is what its name says only tests can tell.
+/// @param warnings gets what the ends had to leave out
 Table closure(const StudyScene& scene, const View& view, const LadderOptions& options, const LadderClimb& climb,
-              const std::vector<Region>& regions, const Progress& progress);
+              const std::vector<Region>& regions, std::vector<std::string>& warnings, const Progress& progress);
 
 /// @param users somebody else's rendering of the scene, as read_users_image returns it: the last rung, and its size the
 /// ladder's

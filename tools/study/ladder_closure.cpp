@@ -8,12 +8,14 @@
 namespace voxref {
 
 Table closure(const StudyScene& scene, const View& view, const LadderOptions& options, const LadderClimb& climb,
-              const std::vector<Region>& regions, const Progress& progress) {
+              const std::vector<Region>& regions, std::vector<std::string>& warnings, const Progress& progress) {
   const Caster caster(scene.scene);
   PathOptions path;
   path.spp = options.spp * options.tries;
   path.seed = static_cast<uint64_t>(options.tries + 1);  // the rungs have those before
   const PathResult traced = trace_paths(scene.scene, caster, view, path, progress);
+  if (const std::string missing = missing_paths(traced.nonfinite, traced.first_nonfinite); !missing.empty())
+    warnings.push_back("closure: " + missing);
   const Measured truth = measured_path(traced.image, false),
                  cone = measured_cone(
                      cone_trace(scene.scene, caster, view, shipped_settings(options), {}, progress).image.image, false);

@@ -64,9 +64,8 @@ class Ladder {
       path.max_depth = max_depth;
       path.seed = static_cast<uint64_t>(t + 1);  // the same for all rungs: what they share cancels
       const PathResult result = trace_paths(scene_, caster_, view_, path, progress_);
-      if (result.nonfinite > 0)
-        climb_.warnings.push_back(fmt::format("{}: {} contributions were not finite and are missing, the first at {}",
-                                              name, result.nonfinite, result.first_nonfinite));
+      if (const std::string missing = missing_paths(result.nonfinite, result.first_nonfinite); !missing.empty())
+        climb_.warnings.push_back(name + ": " + missing);
       rung.tries.push_back(measured_path(result.image, false).value);
       if (max_depth) continue;
       const auto direct = result.image.layer("direct");
@@ -205,8 +204,12 @@ size_t ladder_bytes_per_pixel(const LadderOptions& options) {
   // Rungs: up to six in tries, the others cone-traced once. Beside them the path tracer while it renders (sums and the
   // pass, 424 bytes), or what pixels see, also without specular lobes, and two cone-traced images.
   constexpr size_t noisy = 6, cone_rungs = 5, path = 424;
+  // The user's image (four channels) and its rung, direct light, indices of three regions that a pixel may be in, and
+  // the mean and noise of its difference.
+  constexpr size_t users = 4 * sizeof(float) + sizeof(double), regions = 4 * sizeof(double) + 2 * sizeof(double);
   const size_t rungs = noisy * static_cast<size_t>(options.tries) + cone_rungs + parameters().size();
-  return rungs * sizeof(double) + std::max(path, 2 * sizeof(SeenPoint) + 2 * cone_image_bytes_per_pixel);
+  return rungs * sizeof(double) + users + regions +
+         std::max(path, 2 * sizeof(SeenPoint) + 2 * cone_image_bytes_per_pixel);
 }
 
 }  // namespace voxref

@@ -18,7 +18,7 @@ Truth trace_truth(const Scene& scene, const Caster& caster, const View& view, co
   return {measured_path(paths.image, indirect), indirect, paths.seconds, paths.nonfinite, paths.first_nonfinite};
 }
 
-std::string Truth::missing() const {
+std::string missing_paths(uint64_t nonfinite, const std::string& first_nonfinite) {
   if (nonfinite == 0) return {};
   return fmt::format("{} contributions of the path tracer are NaN or infinite and left out, the first at {}", nonfinite,
                      first_nonfinite);

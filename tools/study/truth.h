@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "compare/measured.h"
@@ -10,6 +11,10 @@ namespace voxref {
 PathResult trace_paths(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options,
                        const Progress& progress);
 
+/// What path tracing had to leave out, in a sentence; empty where nothing is missing. @param nonfinite and
+/// @param first_nonfinite as PathResult's
+std::string missing_paths(uint64_t nonfinite, const std::string& first_nonfinite);
+
 /// What cone-traced images are held against.
 struct Truth {
   Measured light;
@@ -18,8 +23,7 @@ struct Truth {
   uint64_t nonfinite = 0;       ///< as PathResult's: paths that are missing in it
   std::string first_nonfinite;  ///< as PathResult's
 
-  /// The same in a sentence; empty where none is missing.
-  std::string missing() const;
+  std::string missing() const { return missing_paths(nonfinite, first_nonfinite); }
 };
 /// @throws Interrupted
 Truth trace_truth(const Scene& scene, const Caster& caster, const View& view, const PathOptions& options,
