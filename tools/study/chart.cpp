@@ -213,7 +213,7 @@ std::string marks(const Chart& chart) {
     if (fits(mark.x, chart.x))
       text += fmt::format(
           "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead dt 4 lw 1.2 lc rgb '#555555'\n"
-          "set label {1} at first {0}, graph 0.98 right rotate by 90 offset -0.6,0 font ',9' tc rgb '#555555' "
+          "set label {1} at first {0}, graph 0.98 right rotate by 90 offset -1.3,0 font ',9' tc rgb '#555555' "
           "noenhanced front\n",
           mark.x, quoted(mark.label));
   return text;
