@@ -103,6 +103,19 @@ TEST_CASE("A study of images that are not finite says so, and draws no frontier 
   }
   CHECK(section.text.find("Images of 2 settings have pixels that are NaN") != std::string::npos);
   CHECK(section.text.find("contributions of the path tracer are NaN") != std::string::npos);
+  // So do the images that are held against the truth: one sample, of two seeds.
+  const View view = sized(plane.view, 12);
+  uint64_t missing = 0;
+  for (uint64_t seed : {1, 2}) {
+    PathOptions options;
+    options.spp = options.randomizations = 1;
+    options.seed = seed;
+    missing += path_trace(plane.scene, Caster(plane.scene), view, options).nonfinite;
+  }
+  CHECK(missing > 0);
+  CHECK(section.tables[1].number(0, "nonfinite") == double(missing));
+  CHECK(section.text.find(std::to_string(missing) + " contributions to the path tracer's images of 2 seeds are NaN") !=
+        std::string::npos);
 }
 
 TEST_CASE("A scene without indirect light has a chart of its direct light", "[study]") {

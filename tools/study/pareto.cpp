@@ -6,14 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <optional>
 #include <string_view>
 
 #include "compare/statistics.h"
 #include "study/cone_runner.h"
 #include "study/deviation.h"
+#include "study/pareto_chart.h"
 #include "study/study_scenes.h"
 #include "study/truth.h"
 
@@ -110,13 +109,18 @@ Table cone_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
 }
 
 /// Error and time of images that are all the path tracer's, over independent seeds; the noise is the error.
-Table path_table(const Setup& setup, const ParetoGrid& grid, const Progress& progress) {
+/// @param missing gets a sentence on the paths that are missing in them; stays empty where none is
+Table path_table(const Setup& setup, const ParetoGrid& grid, const Progress& progress, std::string& missing) {
+  uint64_t all_nonfinite = 0;
+  std::string first;
   Table table{"pareto_" + setup.scene.name + "_paths",
               fmt::format("Path tracer: mean error of {} seeds", grid.seeds),
               {{"samples", ""}}};
   for (const Column& column : measured_columns()) table.columns.push_back(column);
+  table.columns.push_back({"nonfinite", "paths"});
   for (int spp = 1; spp <= grid.most_spp; spp *= 2) {
     std::vector<double> seconds, errors;
+    uint64_t nonfinite = 0;
     for (int seed = 1; seed <= grid.seeds; ++seed) {
       PathOptions options;
       options.spp = spp;
@@ -127,13 +131,21 @@ Table path_table(const Setup& setup, const ParetoGrid& grid, const Progress& pro
       image.standard_error.assign(image.value.size(), 0.0);
       errors.push_back(deviation(image, setup.truth.light).rel_error());
       seconds.push_back(result.seconds);
+      nonfinite += result.nonfinite;
+      if (first.empty() && result.nonfinite > 0) first = fmt::format("{}, seed {}", result.first_nonfinite, seed);
     }
+    all_nonfinite += nonfinite;
     const Estimate error = estimate(errors);
     const double limit = student_quantile(significance, error.freedom) * error.error;
     std::vector<Cell> row = {double(spp)};
     append(row, measured_cells(spread(seconds), error.mean, {std::max(0.0, error.mean - limit), error.mean + limit}));
+    row.emplace_back(double(nonfinite));
     table.add(std::move(row));
   }
+  if (all_nonfinite > 0)
+    missing = fmt::format(
+        "{} contributions to the path tracer's images of {} seeds are NaN or infinite and left out, the first at {}",
+        all_nonfinite, grid.seeds, first);
   return table;
 }
 
@@ -144,69 +156,12 @@ std::vector<Tradeoff> tradeoffs(const Table& table) {
   return points;
 }
 
-/// @param bars whether its error bars are drawn: of hundreds of points they would hide each other
-ChartPoint chart_point(const Table& table, size_t row, const std::string& label, bool bars) {
-  const auto percent = [&](const char* column) { return 100.0 * table.number(row, column); };
-  ChartPoint point{table.number(row, "time"), percent("rel_error"), 0.0, label};
-  if (!bars) return point;
-  point.x_bar = Interval{table.number(row, "time_least"), table.number(row, "time_greatest")};
-  point.y_bar = Interval{percent("rel_error_low"), percent("rel_error_high")};
-  return point;
-}
-
-/// a to z, then A to Z; empty after those.
-std::string letter(size_t index) {
-  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
-  return std::string(letters.substr(std::min(index, letters.size()), 1));
-}
-
-/// What the letters at the frontier mean, and the frontier itself. Points that are too close to the one labelled before
-/// have none.
-Series frontier_series(const Table& cones, std::span<const size_t> frontier, std::vector<std::string>& notes) {
-  Series series{"the cones' frontier", ChartStyle::line_points};
-  notes.emplace_back("On the frontier:");
-  std::optional<Tradeoff> labelled;
-  size_t letters = 0;
-  for (const size_t i : frontier) {
-    constexpr double room = 1.15;  // that a letter needs of its own, in time or error
-    const Tradeoff here{cones.number(i, "time"), cones.number(i, "rel_error")};
-    std::string label;
-    if (!labelled || here.seconds > room * labelled->seconds || labelled->error > room * here.error) {
-      labelled = here;
-      label = letter(letters++);
-      const auto word = [&](const char* column) { return display(cones.rows[i][cones.column(column)]); };
-      notes.push_back(fmt::format("{}  {} voxels, bounces {}, {}, step {}, {} cones", label, word("voxels"),
-                                  word("bounces"), word("storage"), word("step"), word("cones")));
-    }
-    series.points.push_back(chart_point(cones, i, label, true));
-  }
-  return series;
-}
-
-Chart pareto_chart(const Setup& setup, const Table& cones, const Table& paths, std::span<const size_t> frontier) {
-  Chart chart{"pareto_" + setup.scene.name,
-              fmt::format("{}, {}x{} pixels: error of the {} light against time", setup.scene.name, setup.view.width,
-                          setup.view.height, setup.truth.indirect ? "indirect" : "whole"),
-              {"time of the whole image / s", true},
-              {"relative error (RMS, noise removed) / %", true}};
-  std::map<double, Series> by_resolution;
-  for (size_t i = 0; i < cones.rows.size(); ++i) {
-    Series& series = by_resolution[cones.number(i, "voxels")];
-    series.title = fmt::format("cones, {} voxels", cones.number(i, "voxels"));
-    series.points.push_back(chart_point(cones, i, "", false));
-  }
-  Series samples{"path tracer, samples per pixel", ChartStyle::line_points};
-  for (size_t i = 0; i < paths.rows.size(); ++i)
-    samples.points.push_back(chart_point(paths, i, fmt::format("{}", paths.number(i, "samples")), true));
-  for (auto& [resolution, series] : by_resolution) chart.series.push_back(std::move(series));
-  chart.series.push_back(std::move(samples));
-  chart.series.push_back(frontier_series(cones, frontier, chart.notes));
-  return chart;
-}
-
-/// Says of which settings the images have no error, and whether the truth lacks paths; empty where all is finite.
-std::string not_finite(const Table& cones, const Truth& truth) {
-  std::string text = truth.missing().empty() ? "" : "\n\n" + truth.missing() + ".";
+/// Says of which settings the images have no error, and whether the truth or the path tracer's other images lack paths;
+/// empty where all is finite. @param missing see path_table
+std::string not_finite(const Table& cones, const Truth& truth, const std::string& missing) {
+  std::string text;
+  for (const std::string& sentence : {truth.missing(), missing})
+    if (!sentence.empty()) text += "\n\n" + sentence + ".";
   size_t settings = 0;
   double most = 0.0;
   for (size_t i = 0; i < cones.rows.size(); ++i) {
@@ -260,9 +215,10 @@ Section pareto_section(const StudyScene& scene, const ParetoGrid& grid, const Pr
     Table cones = cone_table(setup, grid, progress);
     const std::vector<size_t> frontier = pareto_frontier(tradeoffs(cones));
     for (const size_t i : frontier) cones.rows[i].back() = "yes";
-    Table paths = path_table(setup, grid, progress);
-    section.text = findings(cones, paths, frontier) + not_finite(cones, setup.truth);
-    section.charts.push_back(pareto_chart(setup, cones, paths, frontier));
+    std::string missing;
+    Table paths = path_table(setup, grid, progress, missing);
+    section.text = findings(cones, paths, frontier) + not_finite(cones, setup.truth, missing);
+    section.charts.push_back(pareto_chart(scene.name, setup.view, setup.truth.indirect, cones, paths, frontier));
     section.tables = {std::move(cones), std::move(paths)};
   });
 }
