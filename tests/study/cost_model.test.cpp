@@ -94,6 +94,24 @@ TEST_CASE("What an image takes whatever its size is not charged to its pixels", 
   CHECK(model.predict(setting(64, 2, 6), 4000).cone_trace == Approx(16e-3));
 }
 
+TEST_CASE("Where images of hardly any pixels met a busy moment, pixels are not free", "[plan]") {
+  // Each of the three took longer than the image that is learned from, which says nothing of its pixels then.
+  CostModel model(4.0 / 3.0, {});
+  for (int image = 0; image < 3; ++image) model.learn_image(20e-3);
+  ConeTraceResult measured = run(setting(64, 2, 6));
+  measured.seconds.cone_trace = 10e-3;
+  model.learn(setting(64, 2, 6), measured, 1000, measured.seconds);
+  const auto seconds = [&](int cones, size_t pixels) {
+    return model.predict(setting(64, 2, cones), pixels).cone_trace;
+  };
+  CHECK(seconds(6, 4000) > seconds(6, 1000));
+  CHECK(seconds(32, 1000) > seconds(6, 1000));
+  // A quieter image does.
+  measured.seconds.cone_trace = 30e-3;
+  model.learn(setting(64, 2, 6), measured, 1000, measured.seconds);
+  CHECK(seconds(6, 4000) == Approx(20e-3 + 4 * 10e-3));
+}
+
 TEST_CASE("One busy moment does not move the model's rates", "[plan]") {
   CostModel model(4.0 / 3.0, {});
   for (const double busy : {1.0, 1.0, 50.0}) {

@@ -74,7 +74,8 @@ void CostModel::learn(const Settings& settings, const ConeTraceResult& result, s
   if (!settings.bounce.count) count.auto_bounces = result.bounces;
   const Work done = work(settings, pixels);
   const auto add = [&](Stage stage, double seconds, double units, double beside = 0.0) {
-    if (seconds > 0.0 && units > 0.0) samples_.push_back({stage, settings, std::max(seconds - beside, 0.0) / units});
+    // What took no longer than what is beside it says nothing of its units: by a rate of 0 they would be free.
+    if (seconds > beside && units > 0.0) samples_.push_back({stage, settings, (seconds - beside) / units});
   };
   add(&StageRates::voxelize, ran.voxelize, done.voxels);
   add(&StageRates::shade, ran.shade + ran.mipmap, done.voxels);

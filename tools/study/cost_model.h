@@ -35,7 +35,8 @@ class CostModel {
   /// @param sight see mean_sight @param rates of stages that no run has told of
   CostModel(double sight, const StageRates& rates) : sight_(sight), rates_(rates) {}
 
-  /// Takes the seconds of an image of hardly any pixels, so that later runs' pixels are not charged with them.
+  /// Takes the seconds of an image of hardly any pixels, so that later runs' pixels are not charged with them. Of a
+  /// later image that took no longer its pixels' rate is not learned.
   void learn_image(double seconds);
   /// Takes what a run counted (voxels, bounces) and how long its stages took. @param pixels of its image
   /// @param ran seconds of each stage that ran for it; 0: it did not, and its result was there from an earlier run,
