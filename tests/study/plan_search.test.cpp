@@ -3,55 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <random>
 #include <set>
 #include <stdexcept>
 
 #include "catch.h"
+#include "study/plan_world.h"
 
 using namespace voxref;
-
-namespace {
-
-/// A world whose images have five pixels, each with what one parameter does to it, and finer values cost more.
-struct SyntheticWorld {
-  SettingSpace space;
-  double spent = 0.0;
-
-  std::vector<double> difference(const SettingPoint& p) const {
-    const double scale = std::sqrt(double(setting_axes));
-    return {scale * 4.0 / space.resolutions[p[resolution_axis]], scale * 0.5 * std::pow(0.4, double(p[bounce_axis])),
-            scale * 0.1 * double(p[storage_axis] == 0), scale * 0.03 * double(1 - p[step_axis]),
-            scale * 0.9 / space.cones[p[cone_axis]]};
-  }
-  double error(const SettingPoint& p) const {
-    double square = 0.0;
-    for (const double d : difference(p)) square += d * d / double(setting_axes);
-    return std::sqrt(square);
-  }
-  double cost(const SettingPoint& p) const {
-    const double side = space.resolutions[p[resolution_axis]];
-    return (1.0 + double(p[step_axis])) *
-           (side * side * (1.0 + double(p[bounce_axis])) + 2e3 * space.cones[p[cone_axis]]) *
-           (1.0 + 0.05 * double(p[storage_axis]));
-  }
-  /// Of a small image: the volume counts.
-  double effort(const SettingPoint& p) const {
-    const double side = space.resolutions[p[resolution_axis]];
-    return (1.0 + double(p[step_axis])) *
-           (side * side * (1.0 + double(p[bounce_axis])) + 20.0 * space.cones[p[cone_axis]]);
-  }
-  PlanOracle oracle() {
-    return {[this](const SettingPoint& p) {
-              spent += effort(p);
-              return PlanTrial{p, error(p), 0.0, difference(p)};
-            },
-            [this](const SettingPoint& p) { return cost(p); }};
-  }
-};
-
-}  // namespace
 
 TEST_CASE("The search finds the cheapest setting of a world whose errors add up, or that there is none", "[plan]") {
   for (const double budget : {0.6, 0.4, 0.2, 0.1, 0.05, 0.03, 0.001}) {
@@ -105,64 +63,6 @@ TEST_CASE("Noise of the truth, which every difference holds, hides no setting th
   CHECK(with.trials.size() == without.trials.size());
 }
 
-TEST_CASE("The next steps lie beside the plan, one value along one axis", "[plan]") {
-  for (const double budget : {0.6, 0.4, 0.3, 0.2, 0.1}) {
-    SyntheticWorld world;
-    const PlanSearch search = search_plan(world.space, budget, world.oracle());
-    CAPTURE(budget);
-    REQUIRE(search.best);
-    const SettingPoint& best = search.best->point;
-    const auto apart = [&](const PlanTrial& other) {
-      size_t axes = 0;
-      for (size_t a = 0; a < setting_axes; ++a) axes += other.point[a] != best[a];
-      return axes;
-    };
-    if (search.cheaper) {
-      CHECK(apart(*search.cheaper) == 1);
-      CHECK(world.cost(search.cheaper->point) < world.cost(best));
-      CHECK(search.cheaper->rel_error > budget);  // else it would be the plan
-    }
-    REQUIRE(search.better);
-    CHECK(apart(*search.better) == 1);
-    CHECK(search.better->rel_error < search.best->rel_error);
-    for (size_t a = 0; a < setting_axes; ++a) {
-      SettingPoint up = best, down = best;
-      // Of all steps upward that win anything the cheapest; of all downward that save anything the most accurate.
-      if (++up[a] < world.space.size(a) && world.error(up) < 0.96 * search.best->rel_error)
-        CHECK(world.cost(search.better->point) <= world.cost(up));
-      if (best[a] == 0) continue;
-      --down[a];
-      if (!(world.cost(down) < world.cost(best))) continue;
-      REQUIRE(search.cheaper);
-      CHECK(search.cheaper->rel_error <= world.error(down));
-    }
-  }
-}
-
-TEST_CASE("A step upward that promises more than it holds is not offered", "[plan]") {
-  size_t deceived = 0;
-  for (const double budget : {0.4, 0.3, 0.2, 0.1, 0.05}) {
-    SyntheticWorld world;
-    const PlanSearch honest = search_plan(world.space, budget, world.oracle());
-    CAPTURE(budget);
-    REQUIRE(honest.better);
-    if (honest.trials.back().point != honest.better->point) continue;  // was measured before: nothing is promised
-    ++deceived;
-    PlanOracle oracle = world.oracle();
-    const auto measure = oracle.measure;
-    oracle.measure = [&](const SettingPoint& p) {
-      PlanTrial trial = measure(p);
-      if (p == honest.better->point) trial.rel_error *= 3.0;
-      return trial;
-    };
-    const PlanSearch search = search_plan(world.space, budget, oracle);
-    REQUIRE(search.best);
-    CHECK(search.best->point == honest.best->point);
-    if (search.better) CHECK(search.better->rel_error < search.best->rel_error);
-  }
-  CHECK(deceived > 0);
-}
-
 TEST_CASE("More cones that take less time than fewer are measured, once, and found", "[plan]") {
   // Learned rates may say so: each further number of cones costs 0.4 times the one before. Budgets that only finer
   // resolutions reach, several numbers of cones in one volume.
@@ -188,74 +88,6 @@ TEST_CASE("More cones that take less time than fewer are measured, once, and fou
     for (const PlanTrial& trial : search.trials) different.insert(trial.point);
     CHECK(different.size() == search.trials.size());
   }
-}
-
-namespace {
-
-/// What holds of every search under the costs that it ended with.
-void check_consistent(const PlanSearch& search, double budget, const PlanOracle& oracle) {
-  const auto cost = [&](const std::optional<PlanTrial>& trial) { return oracle.cost(trial->point); };
-  for (const PlanTrial& trial : search.trials) {
-    if (trial.rel_error <= budget) {
-      REQUIRE(search.best);
-      CHECK(cost(search.best) <= oracle.cost(trial.point));
-    }
-    CHECK(!(trial.rel_error < search.closest->rel_error));
-  }
-  if (search.best) CHECK(search.best->rel_error <= budget);
-  if (search.cheaper) CHECK(cost(search.cheaper) < cost(search.best));
-  if (search.cheaper) CHECK(!(search.cheaper->rel_error <= budget));  // else it would be the plan
-  if (search.better) CHECK(cost(search.better) >= cost(search.best));
-  if (search.better) CHECK(search.better->rel_error < search.best->rel_error);
-}
-
-}  // namespace
-
-TEST_CASE("A step beside the plan that turns out cheaper and within the budget becomes the plan", "[plan]") {
-  // One setting is better than predicted: the step down from what would be the plan without it.
-  size_t found = 0;
-  for (const double budget : {0.6, 0.4, 0.3, 0.2, 0.1, 0.05}) {
-    SyntheticWorld world;
-    const PlanSearch before = search_plan(world.space, budget, world.oracle());
-    CAPTURE(budget);
-    if (!before.cheaper) continue;
-    const SettingPoint lucky = before.cheaper->point;
-    PlanOracle oracle = world.oracle();
-    const auto measure = oracle.measure;
-    oracle.measure = [&](const SettingPoint& p) {
-      PlanTrial trial = measure(p);
-      if (p == lucky) trial.rel_error = 0.5 * budget;
-      return trial;
-    };
-    const PlanSearch search = search_plan(world.space, budget, oracle);
-    check_consistent(search, budget, oracle);
-    CHECK(oracle.cost(search.best->point) <= oracle.cost(lucky));
-    found += search.best->point == lucky;
-  }
-  CHECK(found > 0);
-}
-
-TEST_CASE("Plan, cheaper, better and closest agree under the costs that the last measurement left", "[plan]") {
-  // Each measurement changes what settings cost, by up to a factor of 3, as learning in busy moments does.
-  for (unsigned seed = 1; seed <= 20; ++seed)
-    for (const double budget : {0.4, 0.2, 0.1, 0.03}) {
-      SyntheticWorld world;
-      std::mt19937 random(seed);
-      std::map<std::pair<size_t, size_t>, double> factors;  // by resolution and cones
-      PlanOracle oracle = world.oracle();
-      oracle.cost = [&](const SettingPoint& p) {
-        const auto factor = factors.find({p[resolution_axis], p[cone_axis]});
-        return world.cost(p) * (factor == factors.end() ? 1.0 : factor->second);
-      };
-      const auto measure = oracle.measure;
-      oracle.measure = [&](const SettingPoint& p) {
-        factors[{p[resolution_axis], p[cone_axis]}] = std::exp(std::uniform_real_distribution<>(0.0, 1.1)(random));
-        return measure(p);
-      };
-      const PlanSearch search = search_plan(world.space, budget, oracle);
-      CAPTURE(seed, budget);
-      check_consistent(search, budget, oracle);
-    }
 }
 
 TEST_CASE("Of two values that make no difference the cheaper stays, be it the finer one", "[plan]") {

@@ -192,17 +192,17 @@ class Search {
     return std::sqrt(std::max(0.0, square / static_cast<double>(own.difference.size()) - oracle_.noise));
   }
 
-  /// The next values to either side, along each axis, that were not dropped.
+  /// The next values to either side, along each axis, that were not dropped. The point's own may have been: at a corner
+  /// of the space it was measured all the same.
   std::vector<SettingPoint> beside(const SettingPoint& point) const {
     std::vector<SettingPoint> found;
     for (size_t axis = 0; axis < setting_axes; ++axis) {
       std::optional<SettingPoint> below, above;
-      for (const SettingPoint& other : kept_) {
+      for (const SettingPoint& kept : kept_) {  // a product: every value that an axis kept is in it
         SettingPoint moved = point;
-        moved[axis] = other[axis];
-        if (moved != other) continue;
-        if (other[axis] < point[axis] && (!below || other[axis] > (*below)[axis])) below = other;
-        if (other[axis] > point[axis] && (!above || other[axis] < (*above)[axis])) above = other;
+        moved[axis] = kept[axis];
+        if (moved[axis] < point[axis] && (!below || moved[axis] > (*below)[axis])) below = moved;
+        if (moved[axis] > point[axis] && (!above || moved[axis] < (*above)[axis])) above = moved;
       }
       for (const auto& neighbour : {below, above})
         if (neighbour) found.push_back(*neighbour);
@@ -218,6 +218,10 @@ class Search {
     const PlanTrial best = *found;
     result_.best = best;
     std::vector<SettingPoint> near = beside(best.point);
+    for (SettingPoint point : near) {  // beside a dropped value predictions lack the coarsest images
+      point[resolution_axis] = 0;
+      measure(point);
+    }
     std::sort(near.begin(), near.end(), [&](auto& a, auto& b) { return oracle_.cost(a) < oracle_.cost(b); });
     std::optional<SettingPoint> cheaper;
     for (const SettingPoint& point : near)

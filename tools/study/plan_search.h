@@ -49,8 +49,9 @@ struct PlanSearch {
 ///    until none is left that would be cheaper than what was found. Where nothing promises or was found, resolutions
 ///    that were reached are searched up to 1.2 times the budget, and then the most promising setting of the next finer
 ///    one is measured, unless errors fall too slowly to come near the budget.
-/// 3. The settings beside the best are measured, `cheaper` and `better`; where that finds a better best, or changes
-///    what settings cost, from 2 again.
+/// 3. The settings beside the best are predicted, with values that were not dropped, though the best may have one that
+///    was, and `cheaper` and `better` measured; where that finds a better best, or changes what settings cost, from 2
+///    again.
 PlanSearch search_plan(const SettingSpace& space, double budget, const PlanOracle& oracle);
 
 }  // namespace voxref
