@@ -145,3 +145,19 @@ TEST_CASE("voxref plan leaves alone what --set and --config give", "[plan][cli]"
   for (const json& row : rows)
     CHECK(std::vector<json>(row.begin() + 1, row.begin() + 4) == std::vector<json>{"0", "float16", 0.25});
 }
+
+TEST_CASE("The flags that voxref plan names are the parameters that it planned with, arrays whole", "[plan][cli]") {
+  const Workplace place;
+  const json plan = place.run_json(
+      "plan point.glb --budget 5 --size 8x8 --set grid.resolution=16 --set bounce.count=0 --set storage=unorm8 "
+      "--set cone.step=1 --set cone.diffuse=4 --set 'grid.bounds=[[-2,-1,-2],[2,3,2]]' "
+      "--set 'light.attenuation=[0, 0.5, 0.1]' --set light.falloff=attenuated -o plan.json");
+  const std::string flags = plan["plan"]["assignments"];
+  CHECK(place.run("cone point.glb -o cone.exr --size 12x12 --config plan.json").status == 0);
+  CHECK(place.run("cone point.glb -o again.exr --size 12x12 " + flags).status == 0);
+  check_same_bits(voxref::read_image(place.path("cone.exr")), voxref::read_image(place.path("again.exr")));
+}
+
+TEST_CASE("voxref plan says that its choice may change with the number of threads", "[plan][cli]") {
+  CHECK(contains(Workplace().run("plan --help").out, "so may runs with\nother --threads"));
+}

@@ -209,15 +209,29 @@ TEST_CASE("The next steps and the plan have the times of its table", "[plan]") {
 TEST_CASE("A plan's settings come back from its JSON and its flags", "[plan]") {
   Settings settings = profile("villegas2016");
   settings.grid.resolution = 64;
+  settings.grid.bounds = Bounds{{-1.0f, 0.0f, -1.5f}, {1.0f, 2.0f, 1.5f}};
+  settings.light.attenuation = {0.0f, 0.5f, 0.25f};
+  settings.storage = Storage::float16;
   settings.render.cone.step = 0.25f;
   settings.bounce.count.reset();
+  const nlohmann::json bounds = {{-1.0, 0.0, -1.5}, {1.0, 2.0, 1.5}};
   CHECK(config(settings) == nlohmann::json{{"profile", "villegas2016"},
-                                           {"grid", {{"resolution", 64}}},
+                                           {"grid", {{"resolution", 64}, {"bounds", bounds}}},
+                                           {"storage", "float16"},
+                                           {"light", {{"attenuation", {0.0, 0.5, 0.25}}}},
                                            {"cone", {{"step", 0.25}}},
                                            {"bounce", {{"count", "auto"}}}});
-  Settings again;
-  apply_json(again, config(settings));
-  CHECK(to_json(again) == to_json(settings));
-  CHECK(assignments(settings) ==
-        "--profile villegas2016 --set bounce.count=auto --set cone.step=0.25 --set grid.resolution=64");
+  Settings from_json, from_flags = profile(settings.profile);
+  apply_json(from_json, config(settings));
+  CHECK(to_json(from_json) == to_json(settings));
+  for (const std::string& assignment : assignments(settings)) apply_assignment(from_flags, assignment);
+  CHECK(to_json(from_flags) == to_json(settings));
+  CHECK(assignments(settings).size() == 6);  // one for each parameter that differs
+}
+
+TEST_CASE("Settings that are the profile's own take no flags but its name", "[plan]") {
+  for (const char* name : {"radiometric", "villegas2016"}) {
+    CHECK(assignments(profile(name)).empty());
+    CHECK(config(profile(name)) == nlohmann::json{{"profile", name}});
+  }
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "settings_table.h"
 #include "study/cone_runner.h"
 #include "study/deviation.h"
 #include "study/plan_unused.h"
@@ -177,17 +178,15 @@ nlohmann::json config(const Settings& settings) {
   return result;
 }
 
-std::string assignments(const Settings& settings) {
-  nlohmann::json differing = config(settings);
-  differing.erase("profile");
-  const nlohmann::json flat = differing.flatten();
-  std::string text = "--profile " + settings.profile;
-  for (const auto& [pointer, value] : flat.items()) {
-    std::string key = pointer.substr(1);
-    std::replace(key.begin(), key.end(), '/', '.');
-    text += " --set " + key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+std::vector<std::string> assignments(const Settings& settings) {
+  const Settings from = profile(settings.profile);
+  std::vector<std::string> result;
+  for (const Parameter& parameter : parameters()) {
+    const nlohmann::json value = parameter.get(settings);
+    if (value == parameter.get(from)) continue;
+    result.push_back(parameter.key + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
   }
-  return text;
+  return result;
 }
 
 }  // namespace voxref

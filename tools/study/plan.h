@@ -49,7 +49,7 @@ Plan make_plan(const Scene& scene, const Caster& caster, const View& view, const
 
 /// The parameters in which `settings` differ from the profile that they start from: what `cone --config` reads.
 nlohmann::json config(const Settings& settings);
-/// The same as flags of `cone`: --set a=1 --set b=2
-std::string assignments(const Settings& settings);
+/// The same but for the profile, as `cone --set` takes it: "key=value" each.
+std::vector<std::string> assignments(const Settings& settings);
 
 }  // namespace voxref

@@ -11,6 +11,7 @@
 #include "outputs.h"
 #include "parallel.h"
 #include "parse.h"
+#include "provenance.h"
 #include "study/plan.h"
 #include "summary.h"
 #include "terminal.h"
@@ -41,12 +42,19 @@ void fix_given(SettingSpace& space, const SettingsOptions& options, const Settin
   }
 }
 
+/// What gives `cone` these settings.
+std::string flags(const Settings& settings) {
+  std::string text = "--profile " + settings.profile;
+  for (const std::string& assignment : assignments(settings)) text += " --set " + shell_word(assignment);
+  return text;
+}
+
 std::string sentence(const PlannedSetting& setting) {
   const std::string error = setting.nonfinite > 0 ? fmt::format("no error, {} pixels are not finite", setting.nonfinite)
                                                   : fmt::format("error {:.1f} % +- {:.1f}", 100 * setting.rel_error,
                                                                 100 * setting.rel_error_stderr);
   return fmt::format("{}, about {:.2g} s and {}: {}", error, setting.seconds, byte_count(setting.bytes),
-                     assignments(setting.settings));
+                     flags(setting.settings));
 }
 
 nlohmann::json describe(const std::optional<PlannedSetting>& setting) {
@@ -57,7 +65,7 @@ nlohmann::json describe(const std::optional<PlannedSetting>& setting) {
           {"nonfinite", setting->nonfinite},
           {"seconds", setting->seconds},
           {"bytes", setting->bytes},
-          {"assignments", assignments(setting->settings)}};
+          {"assignments", flags(setting->settings)}};
 }
 
 void say(Terminal& terminal, const Plan& plan, const Options& options) {
@@ -130,8 +138,9 @@ void add_plan(CLI::App& program, Run& run) {
       "Chosen are grid.resolution, bounce.count, cone.diffuse, cone.step and storage, but for those that --set or\n"
       "--config give; the others are as given. Errors are measured on a small image against the path tracer, and\n"
       "held against the budget as measured, whatever their error bars. Time and memory are predicted for --size,\n"
-      "time from how long stages took on this machine, so that two runs may choose differently. Exits with 1, and\n"
-      "names and writes the closest, when no setting reaches the budget. Ctrl-C writes nothing and exits with 2.\n\n"
+      "time from how long stages took on this machine, so that two runs may choose differently, and so may runs with\n"
+      "other --threads, though they measure the same errors. Exits with 1, and names and writes the closest, when no\n"
+      "setting reaches the budget. Ctrl-C writes nothing and exits with 2.\n\n"
       "Example:\n  voxref plan scenes/cornell_box_point.glb --budget 0.3 -o plan.json\n"
       "  voxref cone scenes/cornell_box_point.glb -o cone.exr --config plan.json");
   on_run(command, run, [options] { return run_plan(*options); });
