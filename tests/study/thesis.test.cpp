@@ -9,6 +9,7 @@
 #include "study/thesis_data.h"
 #include "study/thesis_scenes.h"
 #include "study/thesis_sections.h"
+#include "study/truth.h"
 
 using namespace voxref;
 
@@ -255,6 +256,12 @@ TEST_CASE("The study of the thesis has every table and figure, with the publishe
       for (const ChartPoint& point : series.points) CHECK(point.x <= (chart.x.title[0] == 'c' ? 128.0 : 64.0));
   const Table& memory = table_of(result, "thesis_memory");
   CHECK(words(memory, "scene") == std::set<std::string>{"cornell_box", "cornell_box_empty", "light_box", "plane_test"});
+}
+
+TEST_CASE("What a truth lacks is said with its place", "[study][thesis]") {
+  CHECK(missing_paths(0, "").empty());
+  CHECK(missing_paths(2, "pixel (1, 2) sample 3") ==
+        "2 contributions of the path tracer are NaN or infinite and left out, the first at pixel (1, 2) sample 3");
 }
 
 TEST_CASE("A picture differs visibly from that of another resolution, step or bounce, by shares", "[study][thesis]") {

@@ -1,5 +1,6 @@
 #include "study/stability.h"
 
+#include <stdexcept>
 #include <utility>
 
 namespace voxref {
@@ -9,6 +10,22 @@ std::vector<Failure (*)()> failures() {
           flicker,       camera_flicker,     rotation,    scale,           distance,   clamping,   opposite_normals,
           specular_blur, feedback_gain,      cone_gaps,   odd_scenes};
 }
+
+namespace {
+
+std::string direction(Worse worse) {
+  switch (worse) {
+    case Worse::larger:
+      return "larger";
+    case Worse::smaller:
+      return "smaller";
+    case Worse::either:
+      return "either way";
+  }
+  throw std::logic_error("no such direction");
+}
+
+}  // namespace
 
 // A curve takes a second: there is nothing to leave out under --quick.
 StudyResult run_stability(const StudyRequest& request) {
@@ -23,8 +40,9 @@ StudyResult run_stability(const StudyRequest& request) {
       section.title = failure.title;
       section.text = failure.text;
       for (const Threshold& t : failure.thresholds)
-        thresholds.add({t.name, t.value, t.unit, t.worse == Worse::larger ? "larger" : "smaller", t.meaning});
+        thresholds.add({t.name, t.value, t.unit, direction(t.worse), t.meaning});
       section.charts = std::move(failure.charts);
+      section.warnings = std::move(failure.warnings);
       section.tables.push_back(std::move(failure.table));
     }));
   }

@@ -7,8 +7,8 @@
 
 namespace voxref {
 
-/// Which way a threshold gets worse.
-enum class Worse : uint8_t { larger, smaller };
+/// Which way a threshold gets worse; either: it is to stay what it is.
+enum class Worse : uint8_t { larger, smaller, either };
 
 /// A number that says how badly the method fails, or where it begins to.
 struct Threshold {
@@ -25,6 +25,7 @@ struct Failure {
   Table table;
   std::vector<Chart> charts{};
   std::vector<Threshold> thresholds{};
+  std::vector<std::string> warnings{};  ///< as Section's
 };
 
 // Each takes seconds at most. What is measured goes through the stages that renders go through.

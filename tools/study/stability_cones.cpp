@@ -92,9 +92,13 @@ Failure cone_bands() {
 
 // The voxels that hold a part of a surface end beyond it: along an axis by half a voxel in the mean, and along a
 // direction at an angle to the axes by half its 1-norm, which is 3/2 in the mean over directions. The interpolation
-// between texels reaches as far again, and at an extinction of 9 per voxel its tail is opaque too: together at most
+// between texels reaches as far again, and at an extinction of 9 per voxel its tail is nearly opaque too: together
+// about
 //
 //   2 x 1/2 x 3/2 = 3/2 voxels.
+//
+// Less where a ball of few voxels ends in the thin of the tail; more where voxels are so small that even 1024 cones are
+// wider than one at the ball (1.4 voxels at the finest), since their texels are then a mix with those of two voxels.
 Failure emitter_growth() {
   Failure failure{"Growth of emitters by their voxels",
                   "",
@@ -132,9 +136,10 @@ Failure emitter_growth() {
   constexpr double half = 0.5;  // beyond, more light comes from the growth than half of what is true
   failure.text = fmt::format(
       "The same ball gathered by many narrow cones, mean over the line. The voxels that hold a part of it end beyond "
-      "it, and interpolation reaches further still: by 3/2 voxels at the most, which is theory here, and {:.2f} is the "
-      "most that is measured; it agrees with theory to {:.2f} voxels. Wider cones, whose texels are larger than "
-      "voxels, add to that.",
+      "it, and interpolation reaches further still: by about 3/2 voxels, which is theory here. Measured is {:.2f} at "
+      "the most, and {:.2f} off theory at the most, below it: the tail of the interpolation is not quite opaque. Wider "
+      "cones, whose texels are larger than voxels, add to that; of 1024 cones it is what exceeds 3/2, where they are "
+      "wider at the ball than its finest voxels.",
       growth, off);
   failure.thresholds = {
       {"growth", growth, "voxels", "most that an emitter's radius seems larger to 1024 cones"},

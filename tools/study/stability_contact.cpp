@@ -35,7 +35,6 @@ Scene corner(bool floor_glows, bool wall_glows) {
 /// A point of the floor at so many voxels from the wall.
 glm::vec3 beside_wall(float voxels, float voxel) { return {voxels * voxel - 1.0f, 0.0f, 0.03f}; }
 double wall_light(float voxels, float voxel) { return perpendicular_factor(double(voxels) * double(voxel), 2.0, 2.0); }
-constexpr double tolerable = 0.1;  // the least error that a plan is asked for
 const glm::vec3 open_floor(0.5f, 0.0f, 0.03f);
 
 /// What a floor gathers at a start.
@@ -147,7 +146,7 @@ Failure contact_gap() {
       {"self_lighting_start", needed, "voxels", "least start at which self-lighting is below 1 %"},
       {"contact_error_1", gap_1, "", "relative error one voxel from a glowing wall, shipped start"},
       {"contact_error_4", gap_4, "", "relative error four voxels from a glowing wall, shipped start"},
-      {"contact_break", breaks_at(from_far, tolerable), "voxels",
+      {"contact_break", breaks_at(from_far, plan_error), "voxels",
        "from a glowing wall, below which 512 cones at the shipped start are off by 10 %; 1: they are not"},
       {"contact_published_self", published_own, "", "self-lighting of the published cones at their start, 2 voxels"},
       {"contact_published_1", std::abs(published_1), "", "relative error of theirs one voxel from a glowing wall"},

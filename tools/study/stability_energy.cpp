@@ -16,8 +16,6 @@ namespace voxref {
 
 namespace {
 
-constexpr double noticed = 0.05;  // half of the least error, 10 %, that a plan is asked for
-
 Scene box_under(float power) {
   Scene scene = cornell_box(CornellLight::point);
   for (Light& light : scene.lights) light.intensity *= power;
@@ -57,18 +55,14 @@ double held_by_bytes(const BoxVoxels& box, double power) {
 }  // namespace
 
 Failure clamping() {
-  Failure failure{
-      "Clamping in bytes",
-      "The Cornell box under a lamp of growing power, in unorm8 against float32. Bytes hold radiance to 1; beyond, "
-      "light is lost, and far below, rounding takes over. Theory is the share of the voxels' own light, by area, that "
-      "bytes hold; which voxels a pixel sees, it does not know, nor that filtering rounds again: below a peak of 0.3 "
-      "the latter takes up to half of what theory leaves.",
-      {"stability_clamping",
-       "Mean indirect light in unorm8 over that in float32, by the voxels' peak",
-       {{"peak", "W/(sr m^2)"}, {"ratio", ""}, {"theory", ""}}}};
+  Failure failure{"Clamping in bytes",
+                  "",
+                  {"stability_clamping",
+                   "Mean indirect light in unorm8 over that in float32, by the voxels' peak",
+                   {{"peak", "W/(sr m^2)"}, {"ratio", ""}, {"theory", ""}}}};
   const BoxVoxels box = box_voxels_at_power_1();
   std::vector<ChartPoint> brighter, darker;  // from the peak 1 on: what is lost
-  double below = 0.0, off = 0.0, off_dark = 0.0;
+  double below = 0.0, off = 0.0, off_dark = 0.0, off_darkest = 0.0;
   for (const double peak : {0.003, 0.01, 0.03, 0.1, 0.3, 0.5, 1.0, 2.0, 4.0, 10.0, 30.0, 100.0}) {
     const double power = peak / box.peak;
     const Scene scene = box_under(static_cast<float>(power));
@@ -83,11 +77,16 @@ Failure clamping() {
     if (peak >= 1.0) brighter.push_back(lost);
     if (peak <= 1.0) darker.insert(darker.begin(), lost);
     if (peak >= 0.3 && peak <= 1.0) below = worst_of({below, lost.y});  // from 77 steps on rounding is small
-    if (peak >= 0.01) {  // darker voxels are rounded to 0 or 1 of 255 steps
-      double& gap = peak >= 0.3 ? off : off_dark;
-      gap = worst_of({gap, std::abs(ratio / theory - 1.0)});
-    }
+    double& gap = peak >= 0.3 ? off : peak >= 0.01 ? off_dark : off_darkest;
+    gap = worst_of({gap, std::abs(ratio / theory - 1.0)});
   }
+  failure.text = fmt::format(
+      "The Cornell box under a lamp of growing power, in unorm8 against float32. Bytes hold radiance to 1; beyond, "
+      "light is lost, and far below, rounding takes over. Theory is the share of the voxels' own light, by area, that "
+      "bytes hold; which voxels a pixel sees, it does not know, nor that filtering rounds again: at peaks of 0.01 to "
+      "0.1 the ratio is up to {:.0f} % off theory, and at 0.003, of which voxels hold 1 of 255 steps or none, {:.0f} "
+      "%.",
+      100.0 * off_dark, 100.0 * off_darkest);
   failure.charts.push_back(
       {"stability_clamping",
        "Light that bytes lose",
@@ -96,8 +95,9 @@ Failure clamping() {
        {curve(failure.table, "peak", "ratio", "measured"),
         theory_curve(failure.table, "peak", "theory", "theory, the voxels' own light", "measured"),
         Series{"radiance 1", ChartStyle::dashes, {chart_point(1.0, 0.0), chart_point(1.0, 1.2)}}}});
-  const double bright = std::pow(10.0, breaks_at(brighter, noticed)), dark = std::pow(10.0, breaks_at(darker, noticed));
-  failure.charts.back().marks = {{bright, "5 % lost"}, {dark, "5 % lost"}};
+  const double bright = std::pow(10.0, breaks_at(brighter, half_plan_error)),
+               dark = std::pow(10.0, breaks_at(darker, half_plan_error));
+  failure.charts.back().marks = {{bright, "5 % lost"}, {dark, "rounding: 5 %"}};
   failure.thresholds = {
       {"clamping_below_1", below, "", "most that bytes change the light while the peak is from 0.3 to 1"},
       {"clamping_bright", bright, "W/(sr m^2)", "peak from which 5 % of the light is lost", Worse::smaller},
@@ -196,12 +196,12 @@ Failure feedback_gain() {
        {curve(failure.table, "albedo", "total_ratio", "measured"),
         curve(failure.table, "albedo", "theory", "theory: 1 - r^(n+2)", ChartStyle::dashes),
         theory_curve(failure.table, "albedo", "theory_gain", "theory with the measured gain", "measured")}}};
-  failure.charts.back().marks = {{breaks_at(totals, noticed), "off by 5 %"}};
+  failure.charts.back().marks = {{breaks_at(totals, half_plan_error), "off by 5 %"}};
   failure.thresholds = {
       {"gain_error", off, "", "most that the gain is off the albedo, to albedo 0.95"},
       {"gain_excess", worst_of({above, gain_at_1 - 1.0}), "", "most that it is above the albedo, to albedo 1"},
       {"gain_total_error", total_off, "", "most that the light after all bounces is off theory, relative"},
-      {"gain_break", breaks_at(totals, noticed), "", "albedo from which that light is off theory by 5 %",
+      {"gain_break", breaks_at(totals, half_plan_error), "", "albedo from which that light is off theory by 5 %",
        Worse::smaller},
       {"gain_total_theory_gap", gain_total_off, "", "the same, of theory with the measured gain"},
       {"gain_unrefused", beyond == "rendered" ? 1.0 : 0.0, "rooms", "whose gain is above 1 and that were rendered"}};

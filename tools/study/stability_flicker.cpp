@@ -58,14 +58,13 @@ Runs moving_camera(int resolution, const std::vector<int>& cones) {
 
 /// Ripple of the shipped number of cones by the voxels that the ball's radius has, and from where on it is seen.
 void add_size(Failure& failure, const std::string& name, const std::string& title, Measure measure) {
-  constexpr double tolerable = 0.05;  // half of the least error, 10 %, that a plan is asked for
   Series ripples{fmt::format("{} cones", shipped_cones), ChartStyle::line_points};
   for (const int resolution : {128, 96, 64, 48, 32, 24}) {
     const Runs runs = measure(resolution, {shipped_cones});
     ripples.points.push_back(
         chart_point(double(ball_radius) / double(runs.voxel), ripple(runs.by_cones.front().second)));
   }
-  const double needed = breaks_at(ripples.points, tolerable);
+  const double needed = breaks_at(ripples.points, half_plan_error);
   failure.charts.push_back({name + "_size",
                             title + " by the ball's size",
                             {"radius / voxels", true},

@@ -121,8 +121,7 @@ Failure distance() {
     }
     const double ratio = moved.mean() / usual;
     failure.table.add({double(away), rounding, ratio, 100.0 * (ratio - 1.0), moved.outcome});
-    constexpr double tolerable = 0.05;  // half of the least error, 10 %, that a plan is asked for
-    const bool right = std::abs(ratio - 1.0) <= tolerable;
+    const bool right = std::abs(ratio - 1.0) <= half_plan_error;
     reached = reached || !right;
     if (!reached) reach = std::log10(double(away));
     if (!right) ++silent;

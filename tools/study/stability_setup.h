@@ -61,6 +61,8 @@ struct TryTrace {
 
 /// Weber's fraction of brightness is 1 to 2 %: below the one a change is not seen, above the other it is.
 inline constexpr double weber_low = 0.01, weber_high = 0.02;
+/// The least error that a plan is asked for, and half of it: where what is measured is one part of an error of many.
+inline constexpr double plan_error = 0.1, half_plan_error = 0.05;
 
 /// Of the Cornell box with a point light, 32 voxels, 16 pixels wide: what it shows where nothing is changed.
 inline constexpr int box_voxels = 32, box_width = 16;

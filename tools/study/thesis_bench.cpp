@@ -23,7 +23,7 @@ double seconds_of(const Work& work) {
   return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-constexpr int two_pixels = 2;  // wide
+constexpr int fixed_part_width = 2;  ///< pixels: of an image whose time is that of what does not go with pixels
 constexpr double published_pixels = 1280.0 * 720.0;
 
 double pixel_count(const View& view) { return double(view.width) * double(view.height); }
@@ -86,7 +86,7 @@ Timing PreparedScene::image_timing(const Settings& settings, const LitVoxels& vo
     return seconds_of([&] { gather_image(scene_.scene, caster_, view, settings, volume, progress_); });
   };
   const auto round = [&] {
-    const double fixed = seconds(sized(scene_.view, two_pixels));
+    const double fixed = seconds(sized(scene_.view, fixed_part_width));
     return std::vector<double>{std::max(0.0, seconds(timed_view(scene_.view, width)) - fixed)};
   };
   return repeated(round).front();
@@ -128,7 +128,7 @@ StageTimings measure_stages(const StudyScene& scene, int resolution, int width, 
       return seconds_of([&] { gather_image(scene.scene, caster, view, settings, lit, progress); });
     };
     const View view = timed_view(scene.view, width);
-    const double fixed_part = image(sized(scene.view, two_pixels)),
+    const double fixed_part = image(sized(scene.view, fixed_part_width)),
                  cones = std::max(0.0, image(view) - fixed_part) * published_pixels / pixel_count(view);
     const double bounce_alone = std::max(0.0, both - second_mipmap);
     std::vector<double> seconds = {fixed_seconds, clear,        dynamic,       shade_seconds,

@@ -37,10 +37,6 @@ double colorfulness(const Image& image) {
   return apart / largest;
 }
 
-}  // namespace
-
-namespace {
-
 /// Rows and series of one kind: what changes along a chart's axis.
 struct EmissionCurves {
   Table table;
@@ -118,7 +114,10 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
       PathOptions path;
       path.spp = sizes.spp;
       const auto traced = [&](const View& seen) {
-        return reflected(trace_paths(scene.scene, caster, seen, path, progress).image);
+        PathResult paths = trace_paths(scene.scene, caster, seen, path, progress);
+        if (const std::string missing = missing_paths(paths.nonfinite, paths.first_nonfinite); !missing.empty())
+          section.warnings.push_back(fmt::format("{}, {} pixels wide: {}", scene.name, seen.width, missing));
+        return reflected(std::move(paths.image));
       };
       const Image truth = traced(view), small_truth = traced(small);
       by_voxels.begin(scene.name);
@@ -149,8 +148,8 @@ Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSize
         "In physical units (radiometric profile), so that the path tracer can judge; without the emitters' own pixels. "
         "Published are pictures.\n\nAt {:g} voxels the light is {} times the true one, and the error's RMS {} of its "
         "mean. {} Part of it is that six cones are wide: at {} voxels they bring {} times the true light, {:g} cones "
-        "{}. {} What is left is not taken apart: texels of such cones are wide still, and emitters are larger by up to "
-        "1.5 voxels even to the narrowest (study stability, growth of emitters).\n\nThe coloured lights' separation is "
+        "{}. {} What is left is not taken apart: texels of such cones are wide still, and emitters are larger by about "
+        "3/2 voxels even to the narrowest (study stability, growth of emitters).\n\nThe coloured lights' separation is "
         "the mean of the largest channel less the smallest over the largest's. Six cones: {} {:g} cones: {}",
         finest, range(by_voxels.table, "mean_ratio", "voxels", finest),
         range(by_voxels.table, "rel_error", "voxels", finest),
