@@ -65,71 +65,56 @@ Contact published_contact(const RawVolume& floor_glows, const RawVolume& wall_gl
   return contact(floor_glows, wall_glows, wall_glows.texels.grid.voxel, light);
 }
 
-}  // namespace
+constexpr std::array starts = {0.5f, 0.75f, 1.0f, 1.25f, 1.5f, 2.0f, 3.0f};
 
-Failure contact_gap() {
-  Failure failure{
-      "Contact gap and self-lighting",
-      "",
-      {"stability_contact",
-       "Self-lighting, and relative error of light from a wall near its foot",
-       {{"cones", ""}, {"start", "voxels"}, {"self_lighting", ""}, {"error_at_1", ""}, {"error_at_4", ""}}}};
-  GridOptions grid;
-  grid.resolution = resolution;
-  const Scene floor_scene = corner(true, false), wall_scene = corner(false, true);
-  const Medium floor_medium = glowing_medium(floor_scene, grid), wall_medium = glowing_medium(wall_scene, grid);
-  const RawVolume floor_raw(glowing_pyramid(floor_scene, grid)), wall_raw(glowing_pyramid(wall_scene, grid));
-  constexpr std::array starts = {0.5f, 0.75f, 1.0f, 1.25f, 1.5f, 2.0f, 3.0f};
-  const auto shipped = double(ConeOptions{}.start), published = double(profile("villegas2016").render.cone.start);
+/// By the start: self-lighting, and errors at 1 and 4 voxels.
+struct ContactCurves {
+  Table table{"stability_contact",
+              "Self-lighting, and relative error of light from a wall near its foot",
+              {{"cones", ""}, {"start", "voxels"}, {"self_lighting", ""}, {"error_at_1", ""}, {"error_at_4", ""}}};
   Chart own_light{"stability_contact_self",
                   "A glowing floor that lights itself",
                   {"start / voxels"},
                   {"self-lighting / radiance", false, 0.0}};
   Chart errors{"stability_contact", "Light of a wall near its foot", {"start / voxels"}, {"gathered / true light - 1"}};
-  const auto add_rows = [&](const std::string& name, const auto& measure) {
-    Series own{name, ChartStyle::line_points}, near = own, far = own;
-    near.title = name + ", 1 voxel from the wall";
-    far.title = name + ", 4 voxels";
+
+  /// @param measure calls (start): Contact
+  template <class Measure>
+  void add_rows(const std::string& name, const Measure& measure) {
+    Series own{name, ChartStyle::line_points}, close = own, further = own;
+    close.title = name + ", 1 voxel from the wall";
+    further.title = name + ", 4 voxels";
     for (const float start : starts) {
       const Contact c = measure(start);
-      failure.table.add({name, double(start), c.own, c.error_1, c.error_4});
+      table.add({name, double(start), c.own, c.error_1, c.error_4});
       own.points.push_back(chart_point(double(start), c.own));
-      near.points.push_back(chart_point(double(start), c.error_1));
-      far.points.push_back(chart_point(double(start), c.error_4));
+      close.points.push_back(chart_point(double(start), c.error_1));
+      further.points.push_back(chart_point(double(start), c.error_4));
     }
     own_light.series.push_back(own);
-    errors.series.push_back(near);
-    errors.series.push_back(far);
-  };
-  double self_lighting = 0.0, gap_1 = 0.0, gap_4 = 0.0, needed = 0.0;
-  for (const int cones : {6, 128}) {
-    add_rows(fmt::format("{} cones", cones), [&](float start) {
-      ConeOptions options;
-      options.start = start;
-      return contact(floor_medium, wall_medium, wall_medium.texels.grid.voxel,
-                     [&](const Medium& medium, const glm::vec3& p) { return gathered(medium, p, up, cones, options); });
-    });
-    const Series& own = own_light.series.back();
-    const std::vector<ChartPoint> from_far(own.points.rbegin(), own.points.rend());
-    needed = worst_of({needed, breaks_at(from_far, weber_low)});
-    self_lighting = worst_of({self_lighting, value_at(own, shipped)});
-    gap_1 = worst_of({gap_1, std::abs(value_at(errors.series.rbegin()[1], shipped))});
-    gap_4 = worst_of({gap_4, std::abs(value_at(errors.series.rbegin()[0], shipped))});
+    errors.series.push_back(close);
+    errors.series.push_back(further);
   }
-  add_rows("published six", [&](float start) { return published_contact(floor_raw, wall_raw, start); });
-  const double published_own = value_at(own_light.series.back(), published),
-               published_1 = value_at(errors.series.rbegin()[1], published),
-               published_4 = value_at(errors.series.rbegin()[0], published);
-  errors.series.push_back(level_line(0.0, double(starts.front()), double(starts.back()), "theory"));
-  own_light.marks = {{needed, "lights itself below"}};
-  failure.charts = {own_light, errors};
-  std::vector<ChartPoint> from_far;
+  /// Of the rows added last.
+  Contact last_at(double start) const {
+    return {value_at(own_light.series.back(), start), value_at(errors.series.rbegin()[1], start),
+            value_at(errors.series.rbegin()[0], start)};
+  }
+};
+
+/// Relative error of 512 cones at the shipped start, from the furthest place on.
+std::vector<ChartPoint> errors_towards(const Medium& wall_glows) {
+  const float voxel = wall_glows.texels.grid.voxel;
+  std::vector<ChartPoint> errors;
   for (const float voxels : {24.0f, 16.0f, 12.0f, 8.0f, 6.0f, 4.0f, 3.0f, 2.0f, 1.0f}) {
-    const double light = gathered(wall_medium, beside_wall(voxels, wall_medium.texels.grid.voxel), up, 512);
-    from_far.push_back(
-        chart_point(double(voxels), std::abs(light / wall_light(voxels, wall_medium.texels.grid.voxel) - 1.0)));
+    const double light = gathered(wall_glows, beside_wall(voxels, voxel), up, 512);
+    errors.push_back(chart_point(double(voxels), std::abs(light / wall_light(voxels, voxel) - 1.0)));
   }
-  failure.text = fmt::format(
+  return errors;
+}
+
+std::string contact_text(const Contact& six, const Contact& many, const Contact& published, double published_start) {
+  return fmt::format(
       "A cone starts off its surface by a few voxels. Too near, a glowing floor lights itself. The floor's light from "
       "a wall that glows is held against the form factor of perpendicular rectangles, one and four voxels from the "
       "contact. A march returns to the line from the surface itself as soon as that has risen as high as the start, so "
@@ -138,20 +123,58 @@ Failure contact_gap() {
       "opaque where they hold a part of it; {:+.0f} and {:+.0f} % with 128.\n\nThe published cones start at {:g} "
       "voxels, take their first sample two voxels further and read opacity raw: {:+.0f} and {:+.0f} %, and a floor "
       "that glows with 1 lights itself with {:.2f}.",
-      100.0 * value_at(errors.series[0], shipped), 100.0 * value_at(errors.series[1], shipped),
-      100.0 * value_at(errors.series[2], shipped), 100.0 * value_at(errors.series[3], shipped), published,
-      100.0 * published_1, 100.0 * published_4, published_own);
-  failure.thresholds = {
-      {"self_lighting", self_lighting, "", "of a glowing floor at the shipped start, over its radiance"},
+      100.0 * six.error_1, 100.0 * six.error_4, 100.0 * many.error_1, 100.0 * many.error_4, published_start,
+      100.0 * published.error_1, 100.0 * published.error_4, published.own);
+}
+
+}  // namespace
+
+Failure contact_gap() {
+  GridOptions grid;
+  grid.resolution = resolution;
+  const Scene floor_scene = corner(true, false), wall_scene = corner(false, true);
+  const Medium floor_medium = glowing_medium(floor_scene, grid), wall_medium = glowing_medium(wall_scene, grid);
+  const RawVolume floor_raw(glowing_pyramid(floor_scene, grid)), wall_raw(glowing_pyramid(wall_scene, grid));
+  const auto shipped = double(ConeOptions{}.start), published_start = double(profile("villegas2016").render.cone.start);
+  ContactCurves curves;
+  double needed = 0.0;
+  const auto add_cones = [&](int cones) {
+    curves.add_rows(fmt::format("{} cones", cones), [&](float start) {
+      ConeOptions options;
+      options.start = start;
+      return contact(floor_medium, wall_medium, wall_medium.texels.grid.voxel,
+                     [&](const Medium& medium, const glm::vec3& p) { return gathered(medium, p, up, cones, options); });
+    });
+    const Series& own = curves.own_light.series.back();
+    const std::vector<ChartPoint> from_far(own.points.rbegin(), own.points.rend());
+    needed = worst_of({needed, breaks_at(from_far, weber_low)});
+    return curves.last_at(shipped);
+  };
+  const Contact six = add_cones(6), many = add_cones(128);
+  curves.add_rows("published six", [&](float start) { return published_contact(floor_raw, wall_raw, start); });
+  const Contact published = curves.last_at(published_start);
+  curves.errors.series.push_back(level_line(0.0, double(starts.front()), double(starts.back()), "theory"));
+  curves.own_light.marks = {{needed, "lights itself below"}};
+  const auto worst = [&](double Contact::*of) { return worst_of({std::abs(six.*of), std::abs(many.*of)}); };
+  const std::vector<Threshold> thresholds = {
+      {"self_lighting", worst_of({0.0, six.own, many.own}), "",
+       "of a glowing floor at the shipped start, over its radiance"},
       {"self_lighting_start", needed, "voxels", "least start at which self-lighting is below 1 %"},
-      {"contact_error_1", gap_1, "", "relative error one voxel from a glowing wall, shipped start"},
-      {"contact_error_4", gap_4, "", "relative error four voxels from a glowing wall, shipped start"},
-      {"contact_break", breaks_at(from_far, plan_error), "voxels",
+      {"contact_error_1", worst(&Contact::error_1), "", "relative error one voxel from a glowing wall, shipped start"},
+      {"contact_error_4", worst(&Contact::error_4), "",
+       "relative error four voxels from a glowing wall, shipped start"},
+      {"contact_break", breaks_at(errors_towards(wall_medium), plan_error), "voxels",
        "from a glowing wall, below which 512 cones at the shipped start are off by 10 %; 1: they are not"},
-      {"contact_published_self", published_own, "", "self-lighting of the published cones at their start, 2 voxels"},
-      {"contact_published_1", std::abs(published_1), "", "relative error of theirs one voxel from a glowing wall"},
-      {"contact_published_4", std::abs(published_4), "", "relative error of theirs four voxels from a glowing wall"}};
-  return failure;
+      {"contact_published_self", published.own, "", "self-lighting of the published cones at their start, 2 voxels"},
+      {"contact_published_1", std::abs(published.error_1), "",
+       "relative error of theirs one voxel from a glowing wall"},
+      {"contact_published_4", std::abs(published.error_4), "",
+       "relative error of theirs four voxels from a glowing wall"}};
+  return {"Contact gap and self-lighting",
+          contact_text(six, many, published, published_start),
+          std::move(curves.table),
+          {curves.own_light, curves.errors},
+          thresholds};
 }
 
 }  // namespace voxref

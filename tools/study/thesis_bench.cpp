@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 #include <utility>
 
 #include "error.h"
@@ -92,62 +94,70 @@ Timing PreparedScene::image_timing(const Settings& settings, const LitVoxels& vo
   return repeated(round).front();
 }
 
+namespace {
+
+/// In the order of a round's seconds.
+constexpr std::array stages = {&StageTimings::fixed,         &StageTimings::clear,  &StageTimings::dynamic,
+                               &StageTimings::shade,         &StageTimings::mipmap, &StageTimings::bounce,
+                               &StageTimings::bounce_mipmap, &StageTimings::cones,  &StageTimings::total};
+
+/// Scaled to the published number of pixels.
+double cones_seconds(const StudyScene& scene, const Caster& caster, const Settings& settings, const LitVoxels& lit,
+                     int width, const Progress& progress) {
+  const auto seconds = [&](const View& view) {
+    return seconds_of([&] { gather_image(scene.scene, caster, view, settings, lit, progress); });
+  };
+  const View view = timed_view(scene.view, width);
+  const double fixed = seconds(sized(scene.view, fixed_part_width));
+  return std::max(0.0, seconds(view) - fixed) * published_pixels / pixel_count(view);
+}
+
+/// Seconds of every stage once. @param result whose bytes and voxels are filled in
+std::vector<double> stages_once(const StudyScene& scene, const Caster& caster, const Settings& settings, int width,
+                                const Progress& progress, StageTimings& result) {
+  progress.check();
+  LitVoxels lit;
+  lit.grid = fit_grid(scene.scene.bounds(), settings.grid);
+  SurfaceGrid fixed, frame;
+  const double fixed_seconds =
+      seconds_of([&] { fixed = voxelize_static(scene.scene, lit.grid, settings.voxelize, progress); });
+  const double clear = seconds_of([&] { frame = fixed; });
+  const double dynamic =
+      seconds_of([&] { frame = add_dynamic(scene.scene, std::move(frame), settings.voxelize, progress); });
+  Shading shading;
+  Clamping clamped;
+  const double shade_seconds = seconds_of([&] {
+    shading = shade(scene.scene, &caster, frame, settings.light, settings.shade, progress);
+    for (glm::vec3& radiance : shading.radiance) radiance = clamped.store<Rgba8>(radiance);
+  });
+  Pyramid8 pyramid;
+  const auto filter = [&] { pyramid = mipmap<Rgba8>(frame, shading.radiance, settings.mipmap, progress); };
+  const double first_mipmap = seconds_of(filter), second_mipmap = seconds_of(filter);
+  const double both = seconds_of([&] {
+    pyramid = bounce(frame, shading.radiance, std::move(pyramid), settings.bounce, settings.render.cone,
+                     settings.mipmap, glm::vec3(0.0f), progress)
+                  .pyramid;
+  });
+  result.bytes = predict_bytes(frame, settings).at("total");
+  result.voxels = frame.size();
+  lit.volume = lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
+  const double cones = cones_seconds(scene, caster, settings, lit, width, progress);
+  std::vector<double> seconds = {fixed_seconds, clear,        dynamic,
+                                 shade_seconds, first_mipmap, std::max(0.0, both - second_mipmap),
+                                 second_mipmap, cones};
+  seconds.push_back(std::accumulate(seconds.begin() + 1, seconds.end(), 0.0));  // static voxels are made once
+  return seconds;
+}
+
+}  // namespace
+
 StageTimings measure_stages(const StudyScene& scene, int resolution, int width, const Progress& progress) {
   const Settings settings = thesis_settings(resolution);
-  const Grid grid = fit_grid(scene.scene.bounds(), settings.grid);
   const Caster caster(scene.scene);
   StageTimings result;
-  const auto round = [&] {
-    progress.check();
-    SurfaceGrid fixed, frame;
-    const double fixed_seconds =
-        seconds_of([&] { fixed = voxelize_static(scene.scene, grid, settings.voxelize, progress); });
-    const double clear = seconds_of([&] { frame = fixed; });
-    const double dynamic =
-        seconds_of([&] { frame = add_dynamic(scene.scene, std::move(frame), settings.voxelize, progress); });
-    Shading shading;
-    Clamping clamped;
-    const double shade_seconds = seconds_of([&] {
-      shading = shade(scene.scene, &caster, frame, settings.light, settings.shade, progress);
-      for (glm::vec3& radiance : shading.radiance) radiance = clamped.store<Rgba8>(radiance);
-    });
-    Pyramid8 pyramid;
-    const auto filter = [&] { pyramid = mipmap<Rgba8>(frame, shading.radiance, settings.mipmap, progress); };
-    const double first_mipmap = seconds_of(filter), second_mipmap = seconds_of(filter);
-    const double both = seconds_of([&] {
-      pyramid = bounce(frame, shading.radiance, std::move(pyramid), settings.bounce, settings.render.cone,
-                       settings.mipmap, glm::vec3(0.0f), progress)
-                    .pyramid;
-    });
-    result.bytes = predict_bytes(frame, settings).at("total");
-    result.voxels = frame.size();
-    LitVoxels lit;
-    lit.grid = grid;
-    lit.volume = lit_volume(std::move(pyramid), settings.render.cone.opacity, settings.mipmap.filter);
-    const auto image = [&](const View& view) {
-      return seconds_of([&] { gather_image(scene.scene, caster, view, settings, lit, progress); });
-    };
-    const View view = timed_view(scene.view, width);
-    const double fixed_part = image(sized(scene.view, fixed_part_width)),
-                 cones = std::max(0.0, image(view) - fixed_part) * published_pixels / pixel_count(view);
-    const double bounce_alone = std::max(0.0, both - second_mipmap);
-    std::vector<double> seconds = {fixed_seconds, clear,        dynamic,       shade_seconds,
-                                   first_mipmap,  bounce_alone, second_mipmap, cones};
-    double total = 0.0;
-    for (size_t i = 1; i < seconds.size(); ++i) total += seconds[i];
-    seconds.push_back(total);
-    return seconds;
-  };
-  const std::vector<Timing> t = repeated(round);
-  result.fixed = t[0];
-  result.clear = t[1];
-  result.dynamic = t[2];
-  result.shade = t[3];
-  result.mipmap = t[4];
-  result.bounce = t[5];
-  result.bounce_mipmap = t[6];
-  result.cones = t[7];
-  result.total = t[8];
+  const std::vector<Timing> timings =
+      repeated([&] { return stages_once(scene, caster, settings, width, progress, result); });
+  for (size_t i = 0; i < stages.size(); ++i) result.*stages[i] = timings.at(i);
   return result;
 }
 

@@ -95,72 +95,87 @@ std::vector<bool> too_apart(const Table& table, double cones) {
   return apart;
 }
 
+constexpr std::array cone_counts = {6, 32, 128};
+
+/// Both kinds, and whether the error falls from step to step.
+struct EmissionMeasures {
+  EmissionCurves by_voxels, by_cones;
+  std::vector<bool> finer, more_cones;
+
+  explicit EmissionMeasures(const ThesisSizes& sizes)
+      : by_voxels("thesis_emission", "What emissive objects bring to their neighbours, against the path tracer",
+                  "voxels", {"voxels along the longest side", true}, "Light of emissive objects by resolution"),
+        by_cones("thesis_emission_cones",
+                 fmt::format("The same at {} voxels by the number of cones, in a picture half as wide", sizes.base),
+                 "cones", {"cones at a pixel", true}, "Light of emissive objects by the number of cones") {}
+};
+
+/// @param warnings of truths that lack paths
+void add_scene(EmissionMeasures& measures, const StudyScene& scene, const ThesisSizes& sizes, const Progress& progress,
+               std::vector<std::string>& warnings) {
+  const Caster caster(scene.scene);
+  const View view = sized(scene.view, sizes.quality_width / 2), small = sized(scene.view, sizes.quality_width / 4);
+  PathOptions path;
+  path.spp = sizes.spp;
+  const auto traced = [&](const View& seen) {
+    PathResult paths = trace_paths(scene.scene, caster, seen, path, progress);
+    if (const std::string missing = missing_paths(paths.nonfinite, paths.first_nonfinite); !missing.empty())
+      warnings.push_back(fmt::format("{}, {} pixels wide: {}", scene.name, seen.width, missing));
+    return reflected(std::move(paths.image));
+  };
+  const Image truth = traced(view), small_truth = traced(small);
+  measures.by_voxels.begin(scene.name);
+  measures.by_cones.begin(scene.name);
+  for (const int resolution : sizes.resolutions) {
+    progress.check();
+    Settings settings;
+    settings.grid.resolution = resolution;
+    const PreparedScene prepared(scene, settings, progress);
+    const LitVoxels lit = prepared.lit(settings);
+    measures.by_voxels.add(resolution, reflected(prepared.image(settings, lit, view.width)), truth);
+    if (resolution != sizes.base) continue;
+    for (const int cones : cone_counts) {
+      settings.render.cone.diffuse = cones;
+      measures.by_cones.add(cones, reflected(prepared.image(settings, lit, small.width)), small_truth);
+    }
+  }
+  add_falls(measures.by_voxels.error.series.back(), measures.finer);
+  add_falls(measures.by_cones.error.series.back(), measures.more_cones);
+}
+
+std::string emission_text(const EmissionMeasures& measures, const ThesisSizes& sizes) {
+  const double finest = sizes.resolutions.back(), many = cone_counts.back();
+  const Table &by_voxels = measures.by_voxels.table, &by_cones = measures.by_cones.table;
+  const auto apart = [&](double cones) {
+    return finding("Colours are further apart than in truth", too_apart(by_cones, cones), "coloured scenes");
+  };
+  return fmt::format(
+      "In physical units (radiometric profile), so that the path tracer can judge; without the emitters' own pixels. "
+      "Published are pictures.\n\nAt {:g} voxels the light is {} times the true one, and the error's RMS {} of its "
+      "mean. {} Part of it is that six cones are wide: at {} voxels they bring {} times the true light, {:g} cones "
+      "{}. {} What is left is not taken apart: texels of such cones are wide still, and emitters are larger by about "
+      "3/2 voxels even to the narrowest (study stability, growth of emitters).\n\nThe coloured lights' separation is "
+      "the mean of the largest channel less the smallest over the largest's. Six cones: {} {:g} cones: {}",
+      finest, range(by_voxels, "mean_ratio", "voxels", finest), range(by_voxels, "rel_error", "voxels", finest),
+      finding("More voxels bring it nearer, by more than both standard errors", measures.finer, "steps in voxels"),
+      sizes.base, range(by_cones, "mean_ratio", "cones", cone_counts.front()), many,
+      range(by_cones, "mean_ratio", "cones", many),
+      finding("More cones lower the error, by more than both standard errors", measures.more_cones, "steps in cones"),
+      apart(cone_counts.front()), many, apart(many));
+}
+
 }  // namespace
 
 Section thesis_emission(const std::vector<StudyScene>& glowing, const ThesisSizes& sizes, const Progress& progress) {
   return timed_section("Figures 4.33 to 4.35: emissive objects and no lamp", [&](Section& section) {
-    EmissionCurves by_voxels("thesis_emission",
-                             "What emissive objects bring to their neighbours, against the path tracer", "voxels",
-                             {"voxels along the longest side", true}, "Light of emissive objects by resolution");
-    EmissionCurves by_cones(
-        "thesis_emission_cones",
-        fmt::format("The same at {} voxels by the number of cones, in a picture half as wide", sizes.base), "cones",
-        {"cones at a pixel", true}, "Light of emissive objects by the number of cones");
-    constexpr std::array cone_counts = {6, 32, 128};
-    std::vector<bool> finer, more_cones;
-    for (const StudyScene& scene : glowing) {
-      const Caster caster(scene.scene);
-      const View view = sized(scene.view, sizes.quality_width / 2), small = sized(scene.view, sizes.quality_width / 4);
-      PathOptions path;
-      path.spp = sizes.spp;
-      const auto traced = [&](const View& seen) {
-        PathResult paths = trace_paths(scene.scene, caster, seen, path, progress);
-        if (const std::string missing = missing_paths(paths.nonfinite, paths.first_nonfinite); !missing.empty())
-          section.warnings.push_back(fmt::format("{}, {} pixels wide: {}", scene.name, seen.width, missing));
-        return reflected(std::move(paths.image));
-      };
-      const Image truth = traced(view), small_truth = traced(small);
-      by_voxels.begin(scene.name);
-      by_cones.begin(scene.name);
-      for (const int resolution : sizes.resolutions) {
-        progress.check();
-        Settings settings;
-        settings.grid.resolution = resolution;
-        const PreparedScene prepared(scene, settings, progress);
-        const LitVoxels lit = prepared.lit(settings);
-        by_voxels.add(resolution, reflected(prepared.image(settings, lit, view.width)), truth);
-        if (resolution != sizes.base) continue;
-        for (const int cones : cone_counts) {
-          settings.render.cone.diffuse = cones;
-          by_cones.add(cones, reflected(prepared.image(settings, lit, small.width)), small_truth);
-        }
-      }
-      add_falls(by_voxels.error.series.back(), finer);
-      add_falls(by_cones.error.series.back(), more_cones);
-    }
-    const double finest = sizes.resolutions.back(), many = cone_counts.back();
-    by_voxels.end(sizes.resolutions.front(), finest);
-    by_cones.end(cone_counts.front(), many);
-    const auto apart = [&](double cones) {
-      return finding("Colours are further apart than in truth", too_apart(by_cones.table, cones), "coloured scenes");
-    };
-    section.text = fmt::format(
-        "In physical units (radiometric profile), so that the path tracer can judge; without the emitters' own pixels. "
-        "Published are pictures.\n\nAt {:g} voxels the light is {} times the true one, and the error's RMS {} of its "
-        "mean. {} Part of it is that six cones are wide: at {} voxels they bring {} times the true light, {:g} cones "
-        "{}. {} What is left is not taken apart: texels of such cones are wide still, and emitters are larger by about "
-        "3/2 voxels even to the narrowest (study stability, growth of emitters).\n\nThe coloured lights' separation is "
-        "the mean of the largest channel less the smallest over the largest's. Six cones: {} {:g} cones: {}",
-        finest, range(by_voxels.table, "mean_ratio", "voxels", finest),
-        range(by_voxels.table, "rel_error", "voxels", finest),
-        finding("More voxels bring it nearer, by more than both standard errors", finer, "steps in voxels"), sizes.base,
-        range(by_cones.table, "mean_ratio", "cones", cone_counts.front()), many,
-        range(by_cones.table, "mean_ratio", "cones", many),
-        finding("More cones lower the error, by more than both standard errors", more_cones, "steps in cones"),
-        apart(cone_counts.front()), many, apart(many));
-    section.tables = {std::move(by_voxels.table), std::move(by_cones.table)};
-    section.charts = {std::move(by_voxels.light), std::move(by_voxels.error), std::move(by_cones.light),
-                      std::move(by_cones.error)};
+    EmissionMeasures measures(sizes);
+    for (const StudyScene& scene : glowing) add_scene(measures, scene, sizes, progress, section.warnings);
+    measures.by_voxels.end(sizes.resolutions.front(), sizes.resolutions.back());
+    measures.by_cones.end(cone_counts.front(), cone_counts.back());
+    section.text = emission_text(measures, sizes);
+    section.tables = {std::move(measures.by_voxels.table), std::move(measures.by_cones.table)};
+    section.charts = {std::move(measures.by_voxels.light), std::move(measures.by_voxels.error),
+                      std::move(measures.by_cones.light), std::move(measures.by_cones.error)};
   });
 }
 
