@@ -4,12 +4,10 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "make_scenes/builders.h"
-#include "study/plan_world.h"
 #include "study/study_scenes.h"
 
 using namespace voxref;
@@ -113,39 +111,6 @@ TEST_CASE("Plans for Sponza are as cheap as an exhaustive search's", "[.long][pl
   const auto file = shared_file("assets/scenes/sponza.glb");
   if (!file) VOXREF_SKIP("sponza.glb is absent");
   check_plans_of(*public_scene("sponza", file->parent_path().parent_path().parent_path(), false));
-}
-
-TEST_CASE("By what this machine's clock taught of every setting, the plan is as cheap as an exhaustive search's",
-          "[.long][plan]") {
-  PlanOptions options;
-  options.space = {
-      {16, 32, 64}, {0, 1, 3}, {Storage::unorm8, Storage::float16, Storage::float32}, {1.0f, 0.5f}, {4, 9, 16}};
-  options.width = 16;
-  options.reference_spp = 256;
-  // The clock is read while all is measured, once; then costs, as uneven as it left them, stand still for both
-  // searches.
-  options.search = [](const SettingSpace& space, double budget, const PlanOracle& oracle) {
-    const PlanSearch learned = exhaustive_search(space, budget, oracle);
-    std::map<SettingPoint, PlanTrial> trials;
-    std::map<SettingPoint, double> costs;
-    for (const PlanTrial& trial : learned.trials) {
-      trials[trial.point] = trial;
-      costs[trial.point] = oracle.cost(trial.point);
-    }
-    const PlanOracle frozen{[&](const SettingPoint& point) { return trials.at(point); },
-                            [&](const SettingPoint& point) { return costs.at(point); }, oracle.noise};
-    for (const double wanted : {0.5, 0.4, 0.3, 0.25, 0.2}) {
-      const PlanSearch all = exhaustive_search(space, wanted, frozen), plan = search_plan(space, wanted, frozen);
-      CAPTURE(wanted, plan.trials.size());
-      CHECK(plan.best.has_value() == all.best.has_value());
-      if (plan.best && all.best) CHECK(costs.at(plan.best->point) <= 1.25 * costs.at(all.best->point));
-      CHECK(plan.trials.size() <= all.trials.size() / 2);  // a sixth or so; how many more is up to the clock
-      check_consistent(plan, wanted, frozen);
-    }
-    return learned;
-  };
-  const StudyScene scene = cornell_point_scene();
-  make_plan(scene.scene, Caster(scene.scene), sized(scene.view, 128), {}, options);
 }
 
 TEST_CASE("A scene without light is planned: black against black is no error", "[plan]") {
