@@ -157,7 +157,9 @@ TEST_CASE("A prepared scene renders what the pipeline renders, and its memory is
   }
   const StageTimings stages = measure_stages(box, 32, 12, {});
   CHECK(stages.bytes == whole.bytes.at("total"));
-  CHECK(stages.fixed.runs == 5);
+  // Three or five by the machine's clock, which decides no test; which of them when is tested above with made-up
+  // seconds.
+  CHECK((stages.fixed.runs == 3 || stages.fixed.runs == 5));
   CHECK(stages.voxels == prepared.lit(settings).voxels_occupied);
   // Times are the machine's; but the total of a round is that of its parts.
   CHECK(stages.total.spread.greatest <= stages.clear.spread.greatest + stages.dynamic.spread.greatest +
