@@ -76,7 +76,7 @@ TEST_CASE("In a closed furnace each rung of the ladder is its closed form", "[la
   // The sum of the rungs says nothing of those in between, which cancel in it: here each is known. Directions do not
   // matter in a furnace, but every factor, bounce and term does.
   constexpr double albedo = 0.5;
-  const StudyScene scene = seen_by_its_camera("furnace", furnace(float(albedo)));
+  const StudyScene scene = seen_by_first_camera("furnace", furnace(float(albedo)));
   const LadderClimb climb = climb_ladder(scene, sized(scene.view, 8), small_options(32), {});
   REQUIRE(climb.rungs.size() == 10);
   const int bounces = std::stoi(climb.rungs[1].name);
@@ -123,7 +123,7 @@ TEST_CASE("The noise of light that rays brought to the voxels is another in each
 }
 
 TEST_CASE("Where nothing is reflected twice the ladder's rays find Lambert's irradiance", "[ladder]") {
-  const StudyScene scene = seen_by_its_camera("luminaire", rectangle_luminaire());
+  const StudyScene scene = seen_by_first_camera("luminaire", rectangle_luminaire());
   const View view = sized(scene.view, 24);
   LadderOptions options = small_options(64);
   options.spp = options.marched_rays = 256;

@@ -56,7 +56,7 @@ TEST_CASE("From the published shaders' settings it is next to nothing to their i
   for (const char* name : {"cornell_64", "glossy_64"}) {
     const auto folder = shared_file(std::filesystem::path("gpu") / name);
     if (!folder) VOXREF_SKIP("the published shaders' output is absent");
-    const StudyScene scene = seen_by_its_camera(name, load_gltf(*folder / "scene.glb"));
+    const StudyScene scene = seen_by_first_camera(name, load_gltf(*folder / "scene.glb"));
     Settings goal;
     apply_json(goal, nlohmann::json::parse(read_file(*folder / "settings.json")));
     const Image users = read_users_image(*folder / "images" / "total_linear.npy");
@@ -155,7 +155,7 @@ TEST_CASE("Files of two scenes' ladders never share a name", "[ladder]") {
 }
 
 TEST_CASE("Regions of a ladder are lit where light falls straight, also from glowing surfaces", "[ladder]") {
-  const StudyScene scene = seen_by_its_camera("lamp", cornell_box(CornellLight::area));
+  const StudyScene scene = seen_by_first_camera("lamp", cornell_box(CornellLight::area));
   LadderOptions options = small_options(16);
   options.width = 12;
   options.tries = 2;

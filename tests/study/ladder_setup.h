@@ -31,12 +31,6 @@ inline size_t rung_named(const LadderClimb& climb, const std::string& name) {
   return static_cast<size_t>(found - climb.rungs.begin());
 }
 
-inline StudyScene seen_by_its_camera(const std::string& name, Scene scene) {
-  StudyScene result{name, std::move(scene), {}};
-  result.view.camera = result.scene.cameras.at(0);
-  return result;
-}
-
 inline std::vector<double> cone_traced(const StudyScene& scene, const View& view, const Settings& settings) {
   const Caster caster(scene.scene);
   return measured_cone(cone_trace(scene.scene, caster, view, settings).image.image, false).value;

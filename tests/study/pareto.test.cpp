@@ -92,8 +92,7 @@ TEST_CASE("Error bars of few seeds are those of Student's distribution", "[study
 
 TEST_CASE("A study of images that are not finite says so, and draws no frontier through them", "[study]") {
   const ParetoGrid grid{{{16}, {0}, {Storage::float32}, {1.0f}, {4, 9}}, 12, 64, 1, 2, 1};
-  StudyScene plane{"plane", point_light_over_plane(), {}};
-  plane.view.camera = plane.scene.cameras.at(0);
+  StudyScene plane = seen_by_first_camera("plane", point_light_over_plane());
   plane.view.background.g = std::numeric_limits<float>::quiet_NaN();
   const Section section = pareto_section(plane, grid, {});
   for (size_t i = 0; i < 2; ++i) {
@@ -120,8 +119,7 @@ TEST_CASE("A study of images that are not finite says so, and draws no frontier 
 
 TEST_CASE("A scene without indirect light has a chart of its direct light", "[study]") {
   const ParetoGrid grid{{{16}, {0}, {Storage::float32}, {1.0f}, {4}}, 12, 64, 1, 2, 1};
-  StudyScene plane{"plane", point_light_over_plane(), {}};
-  plane.view.camera = plane.scene.cameras.at(0);
+  const StudyScene plane = seen_by_first_camera("plane", point_light_over_plane());
   const Section section = pareto_section(plane, grid, {});
   CHECK(section.charts[0].title.find("whole light") != std::string::npos);
   CHECK(std::isfinite(section.tables[0].number(0, "rel_error")));
